@@ -77,14 +77,14 @@ TEST(ProgramOptions, EveryOptionIsRefusedByAMethodThatDoesNotSupportIt) {
             SolveRequest request{.options = {.method = method}};
             ASSERT_EQ(row.value.read(word, request), "");
             settle(request);
-            const Result<Way> way = find_way(request);
-            if (way || method == Method::automatic || row.name == "--method") continue;
+            const Result<MethodForm> method_form = find_method_form(request);
+            if (method_form || method == Method::automatic || row.name == "--method") continue;
             std::vector<std::string> words{"solve", "no_such_scene.obj", "-o", "s.h5", "--method", std::string(name)};
             words.push_back(row.name);
             if (!word.empty()) words.push_back(word);
             const Finished run = run_program(words);
             EXPECT_EQ(run.status, 2) << row.name << " " << name << run.err;
-            EXPECT_NE(run.err.find(way.error().message), std::string::npos) << run.err;
+            EXPECT_NE(run.err.find(method_form.error().message), std::string::npos) << run.err;
             break;
         }
     }

@@ -58,7 +58,8 @@ Result<SolveRequest> request_of(const SolveOptions& options, bool light_groups) 
     if (form_of(request->options) != Form::standard)
         return usage("the options select a published form, which is part of the program only", "more",
                      "run `exitance solve`");
-    if (const exitance::Result<Way> way = find_way(*request); !way) return to_api(way.error());
+    if (const exitance::Result<MethodForm> method_form = find_method_form(*request); !method_form)
+        return to_api(method_form.error());
     if (options.bounces < -1) return usage("must be -1 (all) or at least 0", "bounces");
     if (options.time_limit && !(*options.time_limit > 0)) return usage("must be above 0 seconds", "time_limit");
     return std::move(*request);

@@ -24,8 +24,8 @@ class ElementGather {
     /// `b`: W/m^2. The light of elements that other surfaces cover is omitted, as it reaches no other surface.
     ElementGather(const Stage& stage, const ElementFunction& b);
 
-    /// True if no surface is between any two places. A gather visits all pieces; `forecast_ways` decides whether they
-    /// are few enough for it to be faster than rays.
+    /// True if no surface is between any two places. A gather visits all pieces; `forecast_delivery` decides whether
+    /// they are few enough for it to be faster than rays.
     static bool suits(const Stage& stage);
 
     class Workspace;

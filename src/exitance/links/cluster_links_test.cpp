@@ -5,7 +5,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/links/cluster_refiner.hpp"
 #include "exitance/links/link_refiner.hpp"
-#include "exitance/transport/rooms.hpp"
+#include "exitance/transport/piece_groups.hpp"
 #include "support/built_scene.hpp"
 #include "support/lit_elements.hpp"
 
@@ -21,7 +21,7 @@ struct Clustered : LitElements {
     template <class Light>
     Clustered(const Scene& scene, HierarchyBasis kind, double tolerance, const Light& light)
         : LitElements(scene, kind, light),
-          clusters(tree, find_rooms(stage, tree, 1).of_root),
+          clusters(tree, find_piece_groups(stage, tree, 1).of_root),
           far(sites, clusters),
           near(tree, sites) {
         Progress silent;
@@ -141,11 +141,11 @@ TEST(ClusterLinks, LeakNothingThroughAWallOfAMillimetre) {
     }
 }
 
-TEST(Rooms, AreSeparatedByTheWallBetweenThem) {
+TEST(PieceGroups, AreSeparatedByTheWallBetweenThem) {
     const Scene rooms = furnished({{0, 0, 0}, {4.001, 0, 0}});
     const Stage stage(rooms);
     const ElementTree tree = stage.make_elements({0.5, 0});
-    const std::vector<std::uint32_t> room = find_rooms(stage, tree, 1).of_root;
+    const std::vector<std::uint32_t> room = find_piece_groups(stage, tree, 1).of_root;
     ASSERT_EQ(room.size(), tree.roots().size());
     const std::uint32_t first = room.front();
     for (std::size_t i = 0; i < room.size(); ++i)

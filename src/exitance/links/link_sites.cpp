@@ -74,7 +74,7 @@ std::vector<ElementId> LinkSites::ends() const {
 /// True if NodalBasis provides the filters of the element's split.
 bool LinkSites::is_regular(ElementId parent) const {
     return !tree_->is_cell(parent) &&
-           (tree_->way(parent) == Cut::both || (tree_->way(parent) != Cut::line && tree_->ratio(parent) == 0.5));
+           (tree_->cut_of(parent) == Cut::both || (tree_->cut_of(parent) != Cut::line && tree_->ratio(parent) == 0.5));
 }
 
 /// The pull gives the parent's function that is nearest to those of its children: (sum a P^T W P) parent = sum a P^T W
@@ -86,8 +86,8 @@ LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
     const std::size_t children = tree_->children(parent).size();
     if (is_regular(parent)) {
         for (std::size_t i = 0; i < children; ++i) {
-            out.push.push_back(basis_->push(outer.shape, tree_->way(parent), i));
-            out.pull.push_back(basis_->pull(outer.shape, tree_->way(parent), i));
+            out.push.push_back(basis_->push(outer.shape, tree_->cut_of(parent), i));
+            out.pull.push_back(basis_->pull(outer.shape, tree_->cut_of(parent), i));
         }
         return out;
     }
@@ -156,7 +156,7 @@ void LinkSites::hold(std::span<const ElementId> elements) {
 
 std::uint32_t LinkSites::matrices_below(ElementId parent) {
     if (!is_regular(parent)) return add_matrices(parent);
-    const auto [at, is_new] = regular_.try_emplace({tree_->patch(parent).shape, tree_->way(parent)}, 0);
+    const auto [at, is_new] = regular_.try_emplace({tree_->patch(parent).shape, tree_->cut_of(parent)}, 0);
     if (is_new) at->second = add_matrices(parent);
     return at->second;
 }

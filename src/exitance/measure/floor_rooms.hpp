@@ -14,7 +14,8 @@ struct FloorRoom {
     std::uint32_t part = 0;    ///< Part of that floor.
 };
 
-/// The rooms of a scene, found from floors and walls; the largest floor first. A floor is a group of touching faces
+/// The rooms of a building as users count them, found from floors and walls; the largest floor first. Errors are judged
+/// by other rooms, which light separates (`LightRooms`). A floor is a group of touching faces
 /// that point up, of at least 1 m^2 (in small models: a tenth of the largest). Left out are: spaces too low to stand
 /// in; faces above a room's floor by less than the height of a person, which are furniture; and, if some floors have
 /// ceilings, those without, which are roofs and the ground outside.

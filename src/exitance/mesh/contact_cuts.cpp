@@ -17,12 +17,12 @@ bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
     constexpr double min_share = 1e-5;  // share of the element's area that each part must have
     constexpr double parallel = 1e-6;   // deviation from parallel, as a share of the element
     if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
-        for (const auto& [way, along, across] :
+        for (const auto& [kind, along, across] :
              {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
             if (std::abs(across) > parallel * std::abs(along)) continue;
             const double ratio = line.offset / along;
             if (ratio < min_share || ratio > 1 - min_share) return false;
-            tree.split(e, way, ratio);
+            tree.split(e, kind, ratio);
             return true;
         }
     return !tree.split_by_line(e, line, min_share).is_none();
@@ -117,8 +117,8 @@ class FoundCuts {
             const ElementId e(i), parent = tree.parent(e);
             if (tree.children(parent).front() != e) continue;
             const auto number = static_cast<std::uint32_t>(parent == element ? 0 : parent.value - first + 1);
-            const Cut way = tree.way(parent);
-            cuts_.push_back({number, way, way == Cut::line ? tree.line(parent) : CutLine{{}, tree.ratio(parent)}});
+            const Cut kind = tree.cut_of(parent);
+            cuts_.push_back({number, kind, kind == Cut::line ? tree.line(parent) : CutLine{{}, tree.ratio(parent)}});
         }
         count_.push_back(static_cast<std::uint32_t>(cuts_.size() - before));
     }
@@ -132,10 +132,10 @@ class FoundCuts {
             const std::size_t first = tree.size();
             for (auto made = begin; made != end; ++made) {
                 const ElementId e = made->element == 0 ? elements[i] : ElementId(first + made->element - 1);
-                if (made->way == Cut::line)
+                if (made->kind == Cut::line)
                     tree.split_by_line(e, made->line, 0);
                 else
-                    tree.split(e, made->way, made->line.offset);
+                    tree.split(e, made->kind, made->line.offset);
             }
             end = begin;
         }
@@ -149,7 +149,7 @@ class FoundCuts {
   private:
     struct MadeCut {
         std::uint32_t element;  ///< 0: the element itself; k > 0: the k-th of its descendants.
-        Cut way;
+        Cut kind;
         CutLine line;  ///< For splits across one direction, the ratio replaces the offset.
     };
     std::vector<std::uint32_t> count_;  ///< Number of splits per element.

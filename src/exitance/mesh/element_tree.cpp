@@ -16,7 +16,7 @@ Vec2 into_shape(Vec2 uv, Patch::Shape shape) {
 namespace {
 
 /// Returns the part of cut() that contains (u, v), and the coordinates in it.
-std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, double ratio) {
+std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut kind, double ratio) {
     const auto [u, v] = uv;
     if (shape == Patch::Shape::triangle) {
         if (u >= 0.5) return {1, {2 * u - 1, 2 * v}};
@@ -25,8 +25,8 @@ std::pair<std::size_t, Vec2> descend(Vec2 uv, Patch::Shape shape, Cut way, doubl
         return {3, {1 - 2 * u, 1 - 2 * v}};
     }
     const auto half = [](double t, double r) { return t < r ? t / r : (t - r) / (1 - r); };
-    if (way == Cut::u) return {u < ratio ? 0u : 1u, {half(u, ratio), v}};
-    if (way == Cut::v) return {v < ratio ? 0u : 1u, {u, half(v, ratio)}};
+    if (kind == Cut::u) return {u < ratio ? 0u : 1u, {half(u, ratio), v}};
+    if (kind == Cut::v) return {v < ratio ? 0u : 1u, {u, half(v, ratio)}};
     return {(u < 0.5 ? 0u : 1u) + (v < 0.5 ? 0u : 2u), {half(u, 0.5), half(v, 0.5)}};
 }
 
@@ -68,7 +68,7 @@ Vec2 uniform_in_shape(Patch::Shape shape, double s, double t) {
     return {1 - root, t * root};
 }
 
-std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
+std::vector<Patch> cut(const Patch& p, Cut kind, double ratio) {
     if (p.is_triangle()) {
         const Vec3 a = 0.5 * p.a, b = 0.5 * p.b;
         const auto piece = [](const Point& o, const Vec3& s, const Vec3& t) {
@@ -77,7 +77,7 @@ std::vector<Patch> cut(const Patch& p, Cut way, double ratio) {
         return {piece(p.origin, a, b), piece(p.origin + a, a, b), piece(p.origin + b, a, b),
                 piece(p.origin + a + b, -a, -b)};
     }
-    switch (way) {
+    switch (kind) {
         case Cut::none:
             return {p};
         case Cut::u:
@@ -131,16 +131,16 @@ ElementId ElementTree::add_root(RegionId region, const Patch& shape) {
     return content_->roots.back();
 }
 
-ElementId ElementTree::split(ElementId leaf, Cut way, double ratio) {
-    EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && way != Cut::none && way != Cut::line && way != Cut::fan);
+ElementId ElementTree::split(ElementId leaf, Cut kind, double ratio) {
+    EXI_CHECK(is_leaf(leaf) && !is_cell(leaf) && kind != Cut::none && kind != Cut::line && kind != Cut::fan);
     store_triangles();
     const std::size_t first = stored();
     const RegionId region = content_->region[leaf];
     const Patch whole = content_->patch[leaf];
-    for (const Patch& piece : cut(whole, way, ratio)) add(region, leaf, piece, piece.area());
+    for (const Patch& piece : cut(whole, kind, ratio)) add(region, leaf, piece, piece.area());
     Node& made = cuts_.change().nodes[leaf];
     made.children = {first, stored()};
-    made.way = whole.is_triangle() ? Cut::both : way;
+    made.cut = whole.is_triangle() ? Cut::both : kind;
     made.ratio = ratio;
     return ElementId(first);
 }
@@ -176,7 +176,7 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
     }
     Node& made = cuts_.change().nodes[leaf];
     made.children = {first, stored()};
-    made.way = Cut::line;
+    made.cut = Cut::line;
     made.line = static_cast<std::uint32_t>(c.lines.size());
     c.lines.push_back(record);
     return ElementId(first);
@@ -197,7 +197,7 @@ ElementId ElementTree::split_fan(ElementId leaf, const Fan& fan) {
     c.places.insert(c.places.end(), fan.border.begin(), fan.border.end());
     Node& made = c.nodes[leaf];
     made.children = {first, first + triangles};
-    made.way = Cut::fan;
+    made.cut = Cut::fan;
     made.line = number;
     return ElementId(first);
 }
@@ -282,18 +282,18 @@ std::vector<ElementId> ElementTree::leaves() const {
 ElementTree::Place ElementTree::leaf_at(ElementId e, Vec2 uv) const {
     uv = into_shape(uv, patch(e).shape);
     for (const Node* at = &node(e); !at->children.empty(); at = &node(e)) {
-        if (at->way == Cut::line) {
+        if (at->cut == Cut::line) {
             const LineCut& cut = content_->lines[at->line];
             const std::size_t side = cut.line.distance(uv) <= 0 ? 0 : 1;
             const Vec2 from = uv - cut.origin[side];
             uv = {from.x / cut.size[side].x, from.y / cut.size[side].y};
             e = at->children[side];
-        } else if (at->way == Cut::fan) {
+        } else if (at->cut == Cut::fan) {
             const Place place = in_fan(e, uv);
             uv = place.uv;
             e = place.element;
         } else {
-            const auto [child, inside] = descend(uv, at->shape, at->way, at->ratio);
+            const auto [child, inside] = descend(uv, at->shape, at->cut, at->ratio);
             uv = inside;
             e = at->children[child];
         }

@@ -68,7 +68,7 @@ Vec2 into_shape(Vec2 uv, Patch::Shape shape);
 Vec2 uniform_in_shape(Patch::Shape shape, double s, double t);
 
 /// The parts of a patch after a split, in a fixed order. `ratio`: position of a cut across one direction, in (0, 1).
-std::vector<Patch> cut(const Patch& patch, Cut way, double ratio = 0.5);
+std::vector<Patch> cut(const Patch& patch, Cut kind, double ratio = 0.5);
 
 /// Elements from whole pieces of a region (roots) to leaves, in one growing pool. Children are consecutive and come
 /// after their parent. Hence one forward sweep pushes light down and one backward sweep pulls it up, both without
@@ -82,7 +82,7 @@ class ElementTree {
   public:
     ElementId add_root(RegionId region, const Patch& shape);
     /// Splits a leaf; returns the first child.
-    ElementId split(ElementId leaf, Cut way, double ratio = 0.5);
+    ElementId split(ElementId leaf, Cut kind, double ratio = 0.5);
     /// Splits a leaf along a line into two cells, the first side first. Returns the first child; returns none, and does
     /// nothing, if one side has less than `least` of the leaf's area.
     ElementId split_by_line(ElementId leaf, CutLine line, double least = 1e-6);
@@ -97,8 +97,8 @@ class ElementTree {
     /// Children of an element; empty for a leaf.
     IdRange<ElementId> children(ElementId e) const { return node(e).children; }
     bool is_leaf(ElementId e) const { return node(e).children.empty(); }
-    Cut way(ElementId e) const { return node(e).way; }  ///< How an element was split; none for a leaf.
-    double ratio(ElementId e) const {                   ///< Position of the cut, for splits across one direction.
+    Cut cut_of(ElementId e) const { return node(e).cut; }  ///< How an element was split; none for a leaf.
+    double ratio(ElementId e) const {                      ///< Position of the cut, for splits across one direction.
         return node(e).ratio;
     }
     ElementId parent(ElementId e) const {  ///< Parent of an element; none for a root.
@@ -109,10 +109,10 @@ class ElementTree {
     double area(ElementId e) const {  ///< Area of its domain, m^2.
         return is_stored(e) ? content_->area[e] : fan_triangle(e).area();
     }
-    const CutLine& line(ElementId e) const {  ///< Line along which the element was split, if way(e) is Cut::line.
+    const CutLine& line(ElementId e) const {  ///< Line along which the element was split, if cut_of(e) is Cut::line.
         return content_->lines[node(e).line].line;
     }
-    /// The fan into which an element was split (way(e) is Cut::fan).
+    /// The fan into which an element was split (cut_of(e) is Cut::fan).
     FanView fan(ElementId e) const {
         const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
         const std::size_t end = i + 1 < cuts_->fans.size() ? cuts_->fans[i + 1].first_place : cuts_->places.size();
@@ -173,7 +173,7 @@ class ElementTree {
         IdRange<ElementId> children;
         double ratio = 0.5;
         std::uint32_t line = none;  ///< Index of the line or fan, for elements split by one.
-        Cut way = Cut::none;
+        Cut cut = Cut::none;
         Patch::Shape shape = Patch::Shape::parallelogram;
     };
     /// A split along a line, with the frames of the two cells in the coordinates of the split element.

@@ -12,7 +12,7 @@ struct Root {
 /// A split, stored in the order of the first children, which is the order of the splits.
 struct CutMade {
     ElementId element;
-    Cut way = Cut::none;
+    Cut kind = Cut::none;
     double ratio = 0.5;
     CutLine line;
     std::uint32_t fan_size = 0;  ///< Number of points of the border, if the element is split into a fan.
@@ -29,9 +29,9 @@ void archive(ArchiveWriter& a, const ElementTree& tree) {
         if (parent.is_none()) {
             roots.push_back({e, tree.region(e), tree.patch(e)});
         } else if (tree.children(parent).front() == e) {
-            const Cut way = tree.way(parent);
-            cuts.push_back({parent, way, tree.ratio(parent), way == Cut::line ? tree.line(parent) : CutLine{}});
-            if (way != Cut::fan) continue;
+            const Cut kind = tree.cut_of(parent);
+            cuts.push_back({parent, kind, tree.ratio(parent), kind == Cut::line ? tree.line(parent) : CutLine{}});
+            if (kind != Cut::fan) continue;
             const FanView fan = tree.fan(parent);
             cuts.back().fan_size = static_cast<std::uint32_t>(fan.border.size());
             fans.push_back(fan.apex);
@@ -52,14 +52,14 @@ void archive(ArchiveReader& a, ElementTree& tree) {
     const auto cut_until = [&](std::size_t size) {
         for (; tree.size() < size && next < cuts.size(); ++next) {
             const CutMade& cut = cuts[next];
-            if (cut.way == Cut::line) {
+            if (cut.kind == Cut::line) {
                 tree.split_by_line(cut.element, cut.line, 0);
-            } else if (cut.way == Cut::fan) {
+            } else if (cut.kind == Cut::fan) {
                 const auto border = fan + 1;
                 fan = border + cut.fan_size;
                 tree.split_fan(cut.element, {*(border - 1), {border, fan}});
             } else {
-                tree.split(cut.element, cut.way, cut.ratio);
+                tree.split(cut.element, cut.kind, cut.ratio);
             }
         }
     };

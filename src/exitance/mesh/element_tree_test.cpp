@@ -87,7 +87,7 @@ TEST_P(EveryShape, TrianglesOfFansAreTheSameStoredOrNot) {
         EXPECT_EQ(tree.area(e), stored.area(e));
         EXPECT_EQ(tree.parent(e), stored.parent(e));
         EXPECT_EQ(tree.region(e), stored.region(e));
-        EXPECT_EQ(tree.way(e), stored.way(e));
+        EXPECT_EQ(tree.cut_of(e), stored.cut_of(e));
         EXPECT_EQ(tree.is_cell(e), stored.is_cell(e));
         ASSERT_EQ(tree.children(e).size(), stored.children(e).size());
         for (ElementId child : tree.children(e)) EXPECT_EQ(tree.parent(child), e);

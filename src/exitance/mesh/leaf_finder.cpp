@@ -143,8 +143,8 @@ struct LeafFinder::Builder {
     std::uint32_t add(ElementId e, const Frame& frame) {
         if (tree.is_leaf(e))
             return add_leaf({frame.origin, {frame.scale.x, 0}, {0, frame.scale.y}, e, tree.patch(e).shape});
-        if (tree.way(e) == Cut::line) return add_line(e, frame);
-        if (tree.way(e) == Cut::fan) return add_fan(e, frame);
+        if (tree.cut_of(e) == Cut::line) return add_line(e, frame);
+        if (tree.cut_of(e) == Cut::fan) return add_fan(e, frame);
         return tree.patch(e).is_triangle() ? add_triangle(e, frame) : add_parallelogram(e, frame);
     }
 
@@ -182,8 +182,8 @@ struct LeafFinder::Builder {
 
     std::uint32_t add_parallelogram(ElementId e, const Frame& frame) {
         const IdRange<ElementId> children = tree.children(e);
-        const Cut way = tree.way(e);
-        const double r = way == Cut::both ? 0.5 : tree.ratio(e);
+        const Cut kind = tree.cut_of(e);
+        const double r = kind == Cut::both ? 0.5 : tree.ratio(e);
         const auto halves = [&](Vec2 along, const Frame& whole, ElementId low, ElementId high) {
             const Vec2 across = {along.y, along.x};
             const std::uint32_t node = add_node(whole, along, r);
@@ -191,8 +191,8 @@ struct LeafFinder::Builder {
             set(node, 1, add(high, whole.part(r * along, (1 / (1 - r)) * along + across)));
             return node;
         };
-        if (way == Cut::u) return halves({1, 0}, frame, children[0], children[1]);
-        if (way == Cut::v) return halves({0, 1}, frame, children[0], children[1]);
+        if (kind == Cut::u) return halves({1, 0}, frame, children[0], children[1]);
+        if (kind == Cut::v) return halves({0, 1}, frame, children[0], children[1]);
         const std::uint32_t node = add_node(frame, {0, 1}, r);
         set(node, 0, halves({1, 0}, frame.part({0, 0}, {1, 2}), children[0], children[1]));
         set(node, 1, halves({1, 0}, frame.part({0, 0.5}, {1, 2}), children[2], children[3]));

@@ -77,16 +77,16 @@ class Cutter {
         const bool cut_v = exceeds(b, std::min(size_.edge, along_u)) ||
                            (end_of_v && exceeds(b, size_.longest_end * std::max(a, along_v)));
         if (!cut_u && !cut_v) return;
-        const Cut way = cut_u && cut_v ? Cut::both : cut_u ? Cut::u : Cut::v;
-        tree_.split(e, way);
+        const Cut kind = cut_u && cut_v ? Cut::both : cut_u ? Cut::u : Cut::v;
+        tree_.split(e, kind);
         const IdRange<ElementId> children = tree_.children(e);
         for (std::size_t i = 0; i < children.size(); ++i) {
-            const bool right = way == Cut::both ? i % 2 == 1 : way == Cut::u && i == 1;
-            const bool top = way == Cut::both ? i >= 2 : way == Cut::v && i == 1;
+            const bool right = kind == Cut::both ? i % 2 == 1 : kind == Cut::u && i == 1;
+            const bool top = kind == Cut::both ? i >= 2 : kind == Cut::v && i == 1;
             std::array<bool, 4> t = touches, o = open;  // borders: bottom v = 0, right u = 1, top v = 1, left u = 0
             const std::size_t inner_u = right ? 3 : 1, inner_v = top ? 0 : 2;
-            if (way != Cut::v) t[inner_u] = o[inner_u] = false;
-            if (way != Cut::u) t[inner_v] = o[inner_v] = false;
+            if (kind != Cut::v) t[inner_u] = o[inner_u] = false;
+            if (kind != Cut::u) t[inner_v] = o[inner_v] = false;
             refine_parallelogram(children[i], t, o);
         }
     }

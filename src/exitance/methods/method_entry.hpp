@@ -2,7 +2,7 @@
 
 #include "exitance/base/checkpoint.hpp"
 #include "exitance/error/tolerance/accuracy.hpp"
-#include "exitance/methods/options/ways.hpp"
+#include "exitance/methods/options/method_form.hpp"
 #include "exitance/methods/snapshots.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"

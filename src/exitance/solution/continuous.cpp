@@ -106,7 +106,7 @@ class Projection {
             lumped_[node[i] - first_] += area / static_cast<double>(corners);
         }
         const ElementId parent = tree_.parent(e);
-        if (parent.is_none() || tree_.way(parent) != Cut::fan) {
+        if (parent.is_none() || tree_.cut_of(parent) != Cut::fan) {
             std::array<Spectrum, 4> value;
             for (std::size_t i = 0; i < corners; ++i) value[i] = at_corner(f_, e, i);
             add_products(e, area, std::span(value).first(corners), right_);
@@ -214,8 +214,8 @@ std::size_t elements_of_continuous(const ElementTree& tree) {
     std::size_t count = 0;
     for (ElementId e : tree.ids()) {
         const ElementId parent = tree.parent(e);
-        const bool in_fan = !parent.is_none() && tree.way(parent) == Cut::fan;
-        count += tree.way(e) == Cut::fan || (tree.is_leaf(e) && !in_fan);
+        const bool in_fan = !parent.is_none() && tree.cut_of(parent) == Cut::fan;
+        count += tree.cut_of(e) == Cut::fan || (tree.is_leaf(e) && !in_fan);
     }
     return count;
 }

@@ -16,12 +16,12 @@ namespace {
 constexpr unsigned max_portal_rays = 1 << 18;  ///< Rays that search for openings, in total.
 constexpr unsigned ray_batch = 1 << 10;        ///< Rays of a room that are cast in succession.
 /// The search stops after this number of rays through a room's openings, since more rays rarely find other openings.
-constexpr std::size_t enough_ways = 64;
+constexpr std::size_t enough_rays = 64;
 constexpr std::size_t max_openings = 8;  ///< Maximum number of openings between two rooms.
 constexpr std::size_t max_cells = 16;    ///< Maximum number of parallelograms at which rays of one room are aimed.
 
 /// A ray from one room into another.
-struct Way {
+struct CrossingRay {
     Point from, to;
     std::size_t into;
 };
@@ -39,10 +39,10 @@ class PortalFinder {
     }
 
     /// Casts up to `most` rays from a room and returns those that arrive in a larger room.
-    std::vector<Way> ways(std::size_t room, unsigned most, const StopRequest& stop) const;
+    std::vector<CrossingRay> crossing_rays(std::size_t room, unsigned most, const StopRequest& stop) const;
 
     /// The opening that a ray passes through; of area 0 if too few lines through its neighbourhood find it.
-    PortalCell opening(std::size_t room, const Way& way) const;
+    PortalCell opening(std::size_t room, const CrossingRay& ray) const;
 
   private:
     static constexpr std::size_t none = ~std::size_t{0};
@@ -65,8 +65,8 @@ class PortalFinder {
     };
     /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     void look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const;
-    Point middle(std::size_t room, const Way& way) const;
-    Normal normal(std::size_t room, const Way& way, const Point& at) const;
+    Point middle(std::size_t room, const CrossingRay& ray) const;
+    Normal normal(std::size_t room, const CrossingRay& ray, const Point& at) const;
     /// Casts `lines` lines through a rectangle in the plane of `crossing`. Finds those that end in one room on one side
     /// and in the other room on the other.
     OpenPoints open_points(std::size_t room, std::size_t other, const Crossing& crossing, const SearchedRectangle& in,
@@ -85,12 +85,12 @@ class PortalFinder {
     double largest_;  ///< Size of the scene: limit on the size of an opening, metres.
 };
 
-std::vector<Way> PortalFinder::ways(std::size_t room, unsigned most, const StopRequest& stop) const {
-    std::vector<Way> out;
+std::vector<CrossingRay> PortalFinder::crossing_rays(std::size_t room, unsigned most, const StopRequest& stop) const {
+    std::vector<CrossingRay> out;
     double area = 0;
     for (ElementId e : leaves_[room]) area += tree_.area(e);
     const ScrambledSobol points(hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room));
-    for (unsigned first = 0; first < most && out.size() < enough_ways && !stop.requested(); first += ray_batch) {
+    for (unsigned first = 0; first < most && out.size() < enough_rays && !stop.requested(); first += ray_batch) {
         double before = 0;
         std::size_t leaf = 0;
         for (unsigned k = 0; k < ray_batch; ++k) {
@@ -123,33 +123,33 @@ void PortalFinder::look(const Point& from, std::span<const Vec3> directions, std
 }
 
 /// Point of the ray from which equally much is visible of both rooms.
-Point PortalFinder::middle(std::size_t room, const Way& way) const {
+Point PortalFinder::middle(std::size_t room, const CrossingRay& ray) const {
     constexpr int halvings = 12;
     const std::vector<Vec3> directions = directions_all_around(256);
     std::vector<std::size_t> met;
     double lo = 0, hi = 1;
     for (int i = 0; i < halvings; ++i) {
         const double t = 0.5 * (lo + hi);
-        look(way.from + t * (way.to - way.from), directions, met);
-        const auto own = std::count(met.begin(), met.end(), room), other = std::count(met.begin(), met.end(), way.into);
+        look(ray.from + t * (ray.to - ray.from), directions, met);
+        const auto own = std::count(met.begin(), met.end(), room), other = std::count(met.begin(), met.end(), ray.into);
         (own > other ? lo : hi) = t;
     }
-    return way.from + 0.5 * (lo + hi) * (way.to - way.from);
+    return ray.from + 0.5 * (lo + hi) * (ray.to - ray.from);
 }
 
 /// Normal of the opening, from `room` to the other room: the mean of the directions in which each is visible, with
 /// opposite signs.
-Normal PortalFinder::normal(std::size_t room, const Way& way, const Point& at) const {
+Normal PortalFinder::normal(std::size_t room, const CrossingRay& ray, const Point& at) const {
     const std::vector<Vec3> directions = directions_all_around(1024);
     std::vector<std::size_t> met;
     look(at, directions, met);
     Vec3 sum;
     for (std::size_t k = 0; k < met.size(); ++k) {
-        if (met[k] == way.into) sum += directions[k];
+        if (met[k] == ray.into) sum += directions[k];
         if (met[k] == room) sum -= directions[k];
     }
     const bool tells = norm(sum) > 0.1 * static_cast<double>(met.size());
-    return normalized(tells ? sum : way.to - way.from);
+    return normalized(tells ? sum : ray.to - ray.from);
 }
 
 PortalFinder::OpenPoints PortalFinder::open_points(std::size_t room, std::size_t other, const Crossing& crossing,
@@ -240,21 +240,21 @@ PortalFinder::Crossing PortalFinder::straightened(std::size_t room, std::size_t 
     return {a + 0.5 * (b - a), Frame(normalized(n))};
 }
 
-PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
-    const Point at = middle(room, way);
-    Crossing crossing{at, Frame(normal(room, way, at))};
-    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room, way.into);
-    OpenPoints open = first_points(room, way.into, crossing, key);
-    PortalCell best = surrounded(room, way.into, crossing, open, key);
+PortalCell PortalFinder::opening(std::size_t room, const CrossingRay& ray) const {
+    const Point at = middle(room, ray);
+    Crossing crossing{at, Frame(normal(room, ray, at))};
+    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room, ray.into);
+    OpenPoints open = first_points(room, ray.into, crossing, key);
+    PortalCell best = surrounded(room, ray.into, crossing, open, key);
     if (!(best.area > 0)) return best;
     // The plane found first may be in front of the wall or oblique to it. Lines then also cross it beside the opening,
     // and the rectangle is too large.
-    crossing = straightened(room, way.into, crossing, best, open);
+    crossing = straightened(room, ray.into, crossing, best, open);
     OpenPoints again = open_points(
-        room, way.into, crossing,
+        room, ray.into, crossing,
         {crossing.in_plane(best.corner - crossing.at), crossing.in_plane(best.u), crossing.in_plane(best.v)}, 512,
         hash(key, 8));
-    if (const PortalCell cell = surrounded(room, way.into, crossing, again, hash(key, 9)); cell.area > 0) best = cell;
+    if (const PortalCell cell = surrounded(room, ray.into, crossing, again, hash(key, 9)); cell.area > 0) best = cell;
     return best;
 }
 
@@ -322,20 +322,20 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
     const auto most = std::max(ray_batch, static_cast<unsigned>(max_portal_rays / rooms.count()));
     std::vector<std::vector<PortalCell>> by_room(rooms.count());
     for (std::size_t room = rooms.count(); room-- > 1 && !stop.requested();) {
-        std::vector<Way> ways = finder.ways(room, most, stop);
+        std::vector<CrossingRay> rays = finder.crossing_rays(room, most, stop);
         std::vector<std::size_t> openings(rooms.count());
-        while (!ways.empty() && !stop.requested()) {
-            const Way way = ways.back();
-            ways.pop_back();
-            if (openings[way.into] == max_openings) continue;
-            PortalCell found = finder.opening(room, way);
+        while (!rays.empty() && !stop.requested()) {
+            const CrossingRay ray = rays.back();
+            rays.pop_back();
+            if (openings[ray.into] == max_openings) continue;
+            PortalCell found = finder.opening(room, ray);
             if (!(found.area > 0)) continue;
-            ++openings[way.into];
-            std::erase_if(ways, [&](const Way& other) {
-                return other.into == way.into && passes_near(other.from, other.to - other.from, found);
+            ++openings[ray.into];
+            std::erase_if(rays, [&](const CrossingRay& other) {
+                return other.into == ray.into && passes_near(other.from, other.to - other.from, found);
             });
-            const std::size_t darker = light[room] < light[way.into] ? room : way.into;
-            const double share = found.area / rooms.area(darker), bright = std::max(light[room], light[way.into]);
+            const std::size_t darker = light[room] < light[ray.into] ? room : ray.into;
+            const double share = found.area / rooms.area(darker), bright = std::max(light[room], light[ray.into]);
             // The ratio of light is limited by the light that comes in through the opening.
             const double more = bright > 0 ? bright / std::max(light[darker], share * bright) : 0;
             found.light = more;

@@ -17,8 +17,8 @@ class LightPortals;
 
 /// The rooms of a scene: parts of free space, separated at openings smaller than a tenth of their walls' area. Light
 /// levels of rooms differ by orders of magnitude, so that errors are judged room by room; otherwise the light outdoors
-/// would hide any error in a cellar. A room with less than a twentieth of the area (not counting ground or sky) is
-/// merged with a neighbour.
+/// would hide any error in a cellar. The rooms of a building, as users count them, are `FloorRooms`. A room with less
+/// than a twentieth of the area (not counting ground or sky) is merged with a neighbour.
 class LightRooms {
   public:
     /// Treats the whole scene as one room.

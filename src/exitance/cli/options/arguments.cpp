@@ -71,7 +71,7 @@ std::string supported_values(const OptionRow& row, Form form) {
     std::optional<std::string> values;
     for (const OptionSupport& support : row.support)
         for (const auto& [method, name] : method_names) {
-            if (!support.ways.contains({form, method})) continue;
+            if (!support.forms.contains({form, method})) continue;
             if (values && *values != support.values) return "";
             values = support.values;
         }

@@ -58,8 +58,8 @@ Result<void> read_line_surfaces(SolveArguments& arguments) {
 Result<void> check_support(const SolveArguments& arguments) {
     SolveRequest request = arguments;
     if (processes() > 1 && request.options.method == Method::automatic) request.options.method = Method::matrix;
-    const Result<Way> way = find_way(request);
-    return way ? Result<void>() : Result<void>(way.error());
+    const Result<MethodForm> method_form = find_method_form(request);
+    return method_form ? Result<void>() : Result<void>(method_form.error());
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ Result<void> prepare(ViewArguments& arguments) {
                      "solve the scene first: exitance solve SCENE -o S.h5"};
     SolveRequest request = arguments.request;
     request.options.error = arguments.error;
-    if (const Result<Way> way = find_way(request); !way) return way.error();
+    if (const Result<MethodForm> method_form = find_method_form(request); !method_form) return method_form.error();
     load.photometric = request.photometric, load.light_groups = request.light_groups;
     return read_sky(request, load);
 }

@@ -208,7 +208,7 @@ void write_elements(Hdf5Writer& file, const std::string& group, const ElementTre
          "how an element is cut: 0 not at all, 1 across u, 2 across v, 3 across both, 4 along a line, "
          "5 into triangles around a place"},
         [&](std::size_t i, std::span<std::uint8_t> row) {
-            row[0] = static_cast<std::uint8_t>(tree.way(ElementId(i)));
+            row[0] = static_cast<std::uint8_t>(tree.cut_of(ElementId(i)));
         });
     file.write_rows<double>(group + "/ratio", tree.size(), 1,
                             {"1", "where a cut across one direction stands, in (0, 1)"},
@@ -263,7 +263,7 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     std::vector<std::uint32_t> line_element, fan_element, fan_places;
     std::vector<double> line, fans;
     for (ElementId e : tree.ids()) {
-        if (!tree.parent(e).is_none() && tree.way(tree.parent(e)) == Cut::fan &&
+        if (!tree.parent(e).is_none() && tree.cut_of(tree.parent(e)) == Cut::fan &&
             tree.children(tree.parent(e)).front() == e) {
             const FanView fan = tree.fan(tree.parent(e));
             fan_element.push_back(tree.parent(e).value);
@@ -271,7 +271,7 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
             fans.insert(fans.end(), {fan.apex.x, fan.apex.y});
             for (const Vec2& place : fan.border) fans.insert(fans.end(), {place.x, place.y});
         }
-        if (tree.way(e) != Cut::line) continue;
+        if (tree.cut_of(e) != Cut::line) continue;
         line_element.push_back(e.value);
         line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
     }

@@ -87,7 +87,7 @@ void expect_same(const ElementFunction& a, const ElementFunction& b) {
         ASSERT_TRUE(p.origin == q.origin && p.a == q.a && p.b == q.b && p.shape == q.shape);
         ASSERT_EQ(a.tree.parent(e), b.tree.parent(e));
         ASSERT_EQ(a.tree.region(e), b.tree.region(e));
-        ASSERT_EQ(a.tree.way(e), b.tree.way(e));
+        ASSERT_EQ(a.tree.cut_of(e), b.tree.cut_of(e));
         ASSERT_EQ(a.tree.children(e).size(), b.tree.children(e).size());
         ASSERT_EQ(a.tree.domain(e), b.tree.domain(e));
         ASSERT_EQ(a.tree.area(e), b.tree.area(e));
@@ -96,7 +96,7 @@ void expect_same(const ElementFunction& a, const ElementFunction& b) {
             ASSERT_EQ(a.at(place), b.at(place));
         } else {
             ASSERT_EQ(a.tree.ratio(e), b.tree.ratio(e));
-            if (a.tree.way(e) == Cut::line) {
+            if (a.tree.cut_of(e) == Cut::line) {
                 ASSERT_TRUE(a.tree.line(e).normal == b.tree.line(e).normal &&
                             a.tree.line(e).offset == b.tree.line(e).offset);
             }

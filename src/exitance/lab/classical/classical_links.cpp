@@ -18,7 +18,7 @@ constexpr std::size_t max_rounds = 200;                       // limit on rounds
 
 /// Returns how to cut an element: into quarters, or across its length if a parallelogram is much longer than wide, so
 /// that elements become about as long as wide.
-Cut way_to_cut(const Patch& patch) {
+Cut cut_kind(const Patch& patch) {
     constexpr double long_ratio = 1.5;
     const double a = norm(patch.a), b = norm(patch.b);
     if (patch.is_triangle() || std::max(a, b) <= (1 + rounding) * long_ratio * std::min(a, b)) return Cut::both;
@@ -150,7 +150,7 @@ void LinkedElements::set_light(ElementId e) {
 bool LinkedElements::may_cut(ElementId e) const {
     if (!tree_.is_leaf(e)) return true;
     const Patch& patch = tree_.patch(e);
-    if (patch.area() / (way_to_cut(patch) == Cut::both ? 4 : 2) < min_area_) return false;
+    if (patch.area() / (cut_kind(patch) == Cut::both ? 4 : 2) < min_area_) return false;
     const double edge = std::max({norm(patch.a), norm(patch.b), patch.is_triangle() ? norm(patch.a - patch.b) : 0.0});
     return edge > longest_edge_ * (1 + rounding);
 }
@@ -158,11 +158,11 @@ bool LinkedElements::may_cut(ElementId e) const {
 /// Cuts an element. Its children start with their parent's light.
 void LinkedElements::cut(ElementId e) {
     if (!tree_.is_leaf(e)) return;
-    tree_.split(e, way_to_cut(tree_.patch(e)));
+    tree_.split(e, cut_kind(tree_.patch(e)));
     grow();
     std::size_t i = 0;
     for (ElementId child : tree_.children(e)) {
-        const auto push = basis_.push(tree_.patch(e).shape, tree_.way(e), i++);
+        const auto push = basis_.push(tree_.patch(e).shape, tree_.cut_of(e), i++);
         set_light(child);
         for (std::size_t k = 0; k < n_; ++k) {
             Spectrum b = rhs_[child][k];
@@ -320,7 +320,7 @@ double LinkedElements::gather() {
     for (ElementId p : tree_.ids()) {  // push
         std::size_t i = 0;
         for (ElementId child : tree_.children(p)) {
-            const auto push = basis_.push(tree_.patch(p).shape, tree_.way(p), i++);
+            const auto push = basis_.push(tree_.patch(p).shape, tree_.cut_of(p), i++);
             for (std::size_t k = 0; k < n_; ++k)
                 for (std::size_t j = 0; j < n_; ++j) E_[child][k] += push[k * n_ + j] * E_[p][j];
         }
@@ -342,7 +342,7 @@ double LinkedElements::gather() {
         std::vector<Spectrum> b(n_);
         std::size_t c = 0;
         for (ElementId child : tree_.children(p)) {
-            const auto pull = basis_.pull(tree_.patch(p).shape, tree_.way(p), c++);
+            const auto pull = basis_.pull(tree_.patch(p).shape, tree_.cut_of(p), c++);
             for (std::size_t j = 0; j < n_; ++j)
                 for (std::size_t k = 0; k < n_; ++k) b[j] += pull[j * n_ + k] * B_[child][k];
         }

@@ -4,7 +4,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/transport/rooms.hpp"
+#include "exitance/transport/piece_groups.hpp"
 
 namespace exitance {
 
@@ -24,9 +24,9 @@ Hierarchy::Hierarchy(const MethodInput& input, HierarchyBasis kind, LinkSites::H
       system(input, sites) {}
 
 void Hierarchy::make_clusters() {
-    const Rooms rooms = find_rooms(input.stage, light.tree, input.options.seed);
-    light.work.rays += rooms.rays;
-    clusters.emplace(light.tree, rooms.of_root);
+    const PieceGroups groups = find_piece_groups(input.stage, light.tree, input.options.seed);
+    light.work.rays += groups.rays;
+    clusters.emplace(light.tree, groups.of_root);
     far.emplace(sites, *clusters);
 }
 

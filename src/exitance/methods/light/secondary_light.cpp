@@ -148,8 +148,8 @@ void SecondaryLight::fit_elements(const StopRequest& stop) {
     std::vector<ElementId> fitted;
     for (const ElementId e : fit.tree.ids()) {
         const ElementId parent = fit.tree.parent(e);
-        const bool in_fan = !parent.is_none() && fit.tree.way(parent) == Cut::fan;
-        if (in_fan || !(fit.tree.is_leaf(e) || fit.tree.way(e) == Cut::fan)) continue;
+        const bool in_fan = !parent.is_none() && fit.tree.cut_of(parent) == Cut::fan;
+        if (in_fan || !(fit.tree.is_leaf(e) || fit.tree.cut_of(e) == Cut::fan)) continue;
         fitted.push_back(e);
         fit.first_value[e] = static_cast<std::uint32_t>(fit.values.size());
         for (int k = 0; k < fit.tree.patch(e).corner_count(); ++k) fit.add_value({});

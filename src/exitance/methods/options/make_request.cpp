@@ -75,9 +75,9 @@ std::string new_spelling(const GivenOption* smoothing, const GivenOption* gather
     if (form_of(request.options) != Form::published)
         return smooths ? "--output-light smoothed-elements" : "--output-light elements";
     if (!gather) return smooths ? "nothing else" : "";  // gathered light is the default and is smooth already
-    const Result<Way> way = find_way(request);
-    const std::string recipe =
-        fmt::format("--recipe classical-{}", way ? std::string(name_in(method_names, way->method)) : "METHOD");
+    const Result<MethodForm> method_form = find_method_form(request);
+    const std::string recipe = fmt::format(
+        "--recipe classical-{}", method_form ? std::string(name_in(method_names, method_form->method)) : "METHOD");
     if (gather->word == "on") return recipe + " --output-light gathered";
     return smooths ? recipe + " --output-light smoothed-elements" : recipe;
 }

@@ -16,7 +16,7 @@ struct GivenOption {
 
 /// Builds a request from options in any order. Presets of a recipe are applied first, so that options replace them. Old
 /// names are accepted with a warning. Error (usage): an option has a wrong value, or options cannot be combined.
-/// Support by methods is checked by find_way().
+/// Support by methods is checked by find_method_form().
 Result<SolveRequest> make_request(std::span<const GivenOption> given);
 
 /// Sets the options that others imply: gather and smoothing for --output-light, exact direct light of the published

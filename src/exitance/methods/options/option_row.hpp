@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "exitance/methods/options/method_form.hpp"
 #include "exitance/methods/options/solve_request.hpp"
-#include "exitance/methods/options/ways.hpp"
 
 namespace exitance {
 
@@ -47,9 +47,9 @@ struct OptionValue {
     std::function<std::string(const SolveRequest& request)> json = {};
 };
 
-/// Methods and forms (`ways`) that support an option, and the values of it that they support.
+/// Methods and forms (`forms`) that support an option, and the values of it that they support.
 struct OptionSupport {
-    Ways ways = {};
+    MethodForms forms = {};
     std::string values = {};                         ///< "a|b"; empty: all values.
     bool (*only_if)(const SolveRequest&) = nullptr;  ///< Condition of the support; null: none.
     std::string condition = {};                      ///< `only_if` in words: "with --basis constant".

@@ -16,21 +16,23 @@ using enum Method;
 
 using Support = std::vector<OptionSupport>;
 
-// Sets of ways to solve, for the `support` of rows.
+// Sets of methods and forms, for the `support` of rows.
 
-constexpr Ways standard(std::initializer_list<Method> methods) {
+constexpr MethodForms standard(std::initializer_list<Method> methods) {
     return {Form::standard, methods};
 }
-constexpr Ways published(std::initializer_list<Method> methods) {
+constexpr MethodForms published(std::initializer_list<Method> methods) {
     return {Form::published, methods};
 }
-inline constexpr Ways tasks(Form::tasks, {hierarchical}), local_passes(Form::local_passes, {discontinuity});
-inline constexpr Ways every_standard =
+inline constexpr MethodForms tasks(Form::tasks, {hierarchical}), local_passes(Form::local_passes, {discontinuity});
+inline constexpr MethodForms every_standard =
     standard({matrix, hierarchical, wavelet, progressive, substructuring, monte_carlo, discontinuity, growing_cells});
-inline constexpr Ways every_published = published({matrix, progressive, substructuring, hierarchical, wavelet});
-inline constexpr Ways shooting = standard({progressive, substructuring}) | published({progressive, substructuring});
-inline constexpr Ways linked = standard({hierarchical, wavelet}), published_links = published({hierarchical, wavelet});
-inline constexpr Ways discontinuities = standard({discontinuity}) | local_passes;
+inline constexpr MethodForms every_published = published({matrix, progressive, substructuring, hierarchical, wavelet});
+inline constexpr MethodForms shooting =
+    standard({progressive, substructuring}) | published({progressive, substructuring});
+inline constexpr MethodForms linked = standard({hierarchical, wavelet}),
+                             published_links = published({hierarchical, wavelet});
+inline constexpr MethodForms discontinuities = standard({discontinuity}) | local_passes;
 
 /// `--method discontinuity` finds reflected light as `hierarchical` does, unless reflections are counted.
 inline bool counts_no_reflections(const SolveRequest& r) {

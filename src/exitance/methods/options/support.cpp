@@ -70,10 +70,11 @@ std::string shown(const OptionRow& row, const std::string& value) {
         std::any_of(row.support.begin(), row.support.end(), [](const auto& s) { return !s.values.empty(); });
     return depends ? with_value(row, value) : row.name;
 }
-/// Like shown(row, value), considering support by one way only.
-std::string shown(const OptionRow& row, const std::string& value, Way way) {
-    const bool depends = std::any_of(row.support.begin(), row.support.end(),
-                                     [&](const OptionSupport& s) { return s.ways.contains(way) && !holds(s, value); });
+/// Like shown(row, value), considering support by one method and form only.
+std::string shown(const OptionRow& row, const std::string& value, MethodForm method_form) {
+    const bool depends = std::any_of(row.support.begin(), row.support.end(), [&](const OptionSupport& s) {
+        return s.forms.contains(method_form) && !holds(s, value);
+    });
     return depends ? with_value(row, value) : row.name;
 }
 
@@ -93,12 +94,14 @@ std::string selecting_option(const SolveRequest& request) {
     return "--direct";
 }
 
-/// The error for an option that a way does not support.
-Error not_supported(const OptionRow& row, const std::string& value, Way way, const SolveRequest& request) {
-    const std::string option = shown(row, value, way), here = supporting_here(row, way.form, value, &request);
+/// The error for an option that a method and form do not support.
+Error not_supported(const OptionRow& row, const std::string& value, MethodForm method_form,
+                    const SolveRequest& request) {
+    const std::string option = shown(row, value, method_form),
+                      here = supporting_here(row, method_form.form, value, &request);
     const std::string hint = "exitance solve --help-all says which methods support an option";
     const std::string by = here.empty() ? "" : fmt::format(" (supported by {})", here);
-    switch (way.form) {
+    switch (method_form.form) {
         case Form::tasks:
             return usage(option + " is not supported by --task-engine",
                          "leave one of them out; --method hierarchical supports more options without --task-engine");
@@ -109,20 +112,21 @@ Error not_supported(const OptionRow& row, const std::string& value, Way way, con
                 return usage(fmt::format("{} cannot be combined with {}, which selects the method's published form",
                                          option, selecting_option(request)),
                              "leave one of them out; docs/laboratory/recipes.md lists the options of published forms");
-            return usage(fmt::format("{} is not supported by the published form of {}{}", option, name(way.method), by),
-                         hint);
+            return usage(
+                fmt::format("{} is not supported by the published form of {}{}", option, name(method_form.method), by),
+                hint);
         case Form::standard:
             break;
     }
-    if (request.options.bounces > 0 && way.method != request.options.method)
+    if (request.options.bounces > 0 && method_form.method != request.options.method)
         return usage(fmt::format("{} is not supported by --bounces {}, whose reflections --method matrix counts",
                                  option, request.options.bounces),
                      "leave one of them out");
     if (!here.empty())
-        return usage(fmt::format("{} is not supported by --method {}{}", option, name(way.method), by), hint);
+        return usage(fmt::format("{} is not supported by --method {}{}", option, name(method_form.method), by), hint);
     const std::string published = supporting_methods(row, Form::published, value);
     return usage(fmt::format("{} is not supported by --method {} (supported by the published forms of {})", option,
-                             name(way.method), published),
+                             name(method_form.method), published),
                  "--recipe classical-METHOD selects a published form");
 }
 
@@ -156,10 +160,10 @@ Result<void> check_rules(const SolveRequest& request, Form form) {
     return {};
 }
 
-/// First option that a way does not support; null if it supports all.
-const OptionRow* first_unsupported(const SolveRequest& request, Way way) {
+/// First option that a method and form do not support; null if it supports all.
+const OptionRow* first_unsupported(const SolveRequest& request, MethodForm method_form) {
     for (const OptionRow& row : solve_option_table())
-        if (row.value.word(request) && !supports(row, request, way)) return &row;
+        if (row.value.word(request) && !supports(row, request, method_form)) return &row;
     return nullptr;
 }
 
@@ -198,7 +202,7 @@ std::string supporting_here(const OptionRow& row, Form form, const std::string& 
         }
         const auto find = [&](bool with_condition) {
             return std::find_if(row.support.begin(), row.support.end(), [&](const OptionSupport& s) {
-                return s.ways.contains({form, method}) && holds(s, value) && depends(s) == with_condition;
+                return s.forms.contains({form, method}) && holds(s, value) && depends(s) == with_condition;
             });
         };
         if (find(false) != row.support.end())
@@ -217,11 +221,11 @@ Form form_of(const SolveOptions& options) {
     return options.classical.any() || options.snapshots.any() ? Form::published : Form::standard;
 }
 
-bool supports(const OptionRow& row, const SolveRequest& request, Way way) {
+bool supports(const OptionRow& row, const SolveRequest& request, MethodForm method_form) {
     if (row.support.empty()) return true;
     const std::string value = row.value.word(request).value_or("");
     return std::any_of(row.support.begin(), row.support.end(), [&](const OptionSupport& s) {
-        return s.ways.contains(way) && holds(s, value) && (!s.only_if || s.only_if(request));
+        return s.forms.contains(method_form) && holds(s, value) && (!s.only_if || s.only_if(request));
     });
 }
 
@@ -229,11 +233,11 @@ std::string supporting_methods(const OptionRow& row, Form form, const std::strin
     return supporting_here(row, form, value, nullptr);
 }
 
-Result<Way> find_way(const SolveRequest& request) {
-    return find_way(request, form_of(request.options));
+Result<MethodForm> find_method_form(const SolveRequest& request) {
+    return find_method_form(request, form_of(request.options));
 }
 
-Result<Way> find_way(const SolveRequest& request, Form form) {
+Result<MethodForm> find_method_form(const SolveRequest& request, Form form) {
     const Method method = request.options.method;
     const std::span<const Method> methods = methods_of(form);
     const bool has_form = std::find(methods.begin(), methods.end(), method) != methods.end();
@@ -247,25 +251,25 @@ Result<Way> find_way(const SolveRequest& request, Form form) {
                      "exitance solve --help-all says which methods support an option");
     }
     if (method != Method::automatic) {
-        const Way way{form, in_force(form, method, request)};
-        if (const OptionRow* row = first_unsupported(request, way))
-            return not_supported(*row, *row->value.word(request), way, request);
+        const MethodForm method_form{form, in_force(form, method, request)};
+        if (const OptionRow* row = first_unsupported(request, method_form))
+            return not_supported(*row, *row->value.word(request), method_form, request);
         if (const Result<void> rules = check_rules(request, form); !rules) return rules.error();
-        return Way{form, method};
+        return MethodForm{form, method};
     }
     for (const Method m : methods) {
         if (first_unsupported(request, {form, in_force(form, m, request)})) continue;
         if (const Result<void> rules = check_rules(request, form); !rules) return rules.error();
-        return Way{form, m};
+        return MethodForm{form, m};
     }
     return no_method(request, form);
 }
 
 Result<SolveOptions> with_published_method(SolveOptions options) {
     if (form_of(options) == Form::standard) return options;
-    const Result<Way> way = find_way({.options = options});
-    if (!way) return way.error();
-    options.method = way->method;
+    const Result<MethodForm> method_form = find_method_form({.options = options});
+    if (!method_form) return method_form.error();
+    options.method = method_form->method;
     return options;
 }
 

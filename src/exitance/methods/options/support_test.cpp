@@ -26,8 +26,8 @@ GivenOption given(const char* name, std::string word = "") {
 std::string error_of(const std::vector<GivenOption>& options) {
     const Result<SolveRequest> request = make_request(options);
     if (!request) return request.error().where + ": " + request.error().message;
-    const Result<Way> way = find_way(*request);
-    return way ? "" : way.error().message;
+    const Result<MethodForm> method_form = find_method_form(*request);
+    return method_form ? "" : method_form.error().message;
 }
 
 TEST(OptionTable, NamesAreUniqueAndEveryRowIsComplete) {
@@ -69,10 +69,10 @@ TEST(OptionSupport, EveryMethodRefusesWhatItDoesNotSupportAndNamesTheMethodsThat
                 if (!row.value.word(request)) continue;
                 const Form form = form_of(request.options);
                 const bool counts = request.options.bounces > 0 && method != Method::discontinuity;
-                const Way way{form, counts && form == Form::standard ? Method::matrix : method};
-                if (supports(row, request, way)) continue;
+                const MethodForm method_form{form, counts && form == Form::standard ? Method::matrix : method};
+                if (supports(row, request, method_form)) continue;
                 ++refused;
-                const Result<Way> found = find_way(request);
+                const Result<MethodForm> found = find_method_form(request);
                 ASSERT_FALSE(found) << row.name << " " << word << " " << name;
                 EXPECT_EQ(found.error().code, ErrorCode::usage);
                 EXPECT_NE(found.error().message.find(row.name), std::string::npos) << found.error().message;
@@ -112,7 +112,7 @@ TEST(OptionSupport, RefusesCombinationsWithinAMethod) {
         {{.basis = BasisKind::linear, .form_factors = FormFactorKind::hemicube}, Method::matrix},
     };
     for (const auto& [options, method] : refused) {
-        EXPECT_FALSE(find_way({.options = by(method, options)}));
+        EXPECT_FALSE(find_method_form({.options = by(method, options)}));
         EXPECT_FALSE(supports_all(method, options));
     }
 }
@@ -131,14 +131,14 @@ TEST(OptionSupport, TakesWhatAMethodSupports) {
         {{.keep_links = true}, Method::discontinuity},
     };
     for (const auto& [options, method] : taken)
-        EXPECT_TRUE(find_way({.options = by(method, options)})) << name_in(method_names, method);
+        EXPECT_TRUE(find_method_form({.options = by(method, options)})) << name_in(method_names, method);
 }
 
 TEST(OptionSupport, AutomaticIsTheFirstMethodThatSupportsAll) {
     const Scene tube = built_scene("tube"), cornell = built_scene("cornell");
     const Stage open(tube), cluttered(cornell);
     const auto chosen = [](const Stage& stage, const SolveOptions& options) {
-        EXPECT_TRUE(find_way({.options = options}));
+        EXPECT_TRUE(find_method_form({.options = options}));
         return choose_method(stage, options).options.method;
     };
     EXPECT_EQ(chosen(cluttered, {.overshooting = true}), Method::progressive);
@@ -146,25 +146,28 @@ TEST(OptionSupport, AutomaticIsTheFirstMethodThatSupportsAll) {
     EXPECT_EQ(chosen(open, {.error = 0.001}), Method::wavelet);
     EXPECT_EQ(chosen(open, {.error = 0.001, .form_factors = FormFactorKind::hemicube}), Method::matrix);
     EXPECT_EQ(chosen(cluttered, {.basis = BasisKind::linear, .error_interpolant = 0.001}), Method::matrix);
-    EXPECT_FALSE(find_way({.options = {.epsilon = 0.01, .overshooting = true}}));
-    EXPECT_FALSE(find_way({.options = {.hemicube_cells = 16}}));
-    const auto way = [](const std::vector<GivenOption>& options) { return *find_way(*make_request(options)); };
-    EXPECT_EQ(way({given("--dm-sources", "3")}).method, Method::discontinuity);
-    EXPECT_EQ(way({given("--max-units", "64")}).method, Method::growing_cells);
-    EXPECT_EQ(way({given("--local-pass", "a")}).form, Form::local_passes);
-    EXPECT_EQ(way({given("--task-engine")}).method, Method::hierarchical);
+    EXPECT_FALSE(find_method_form({.options = {.epsilon = 0.01, .overshooting = true}}));
+    EXPECT_FALSE(find_method_form({.options = {.hemicube_cells = 16}}));
+    const auto method_form = [](const std::vector<GivenOption>& options) {
+        return *find_method_form(*make_request(options));
+    };
+    EXPECT_EQ(method_form({given("--dm-sources", "3")}).method, Method::discontinuity);
+    EXPECT_EQ(method_form({given("--max-units", "64")}).method, Method::growing_cells);
+    EXPECT_EQ(method_form({given("--local-pass", "a")}).form, Form::local_passes);
+    EXPECT_EQ(method_form({given("--task-engine")}).method, Method::hierarchical);
 }
 
 TEST(OptionSupport, PublishedFormsNameTheMethodsThatSupportAnOption) {
     ClassicalOptions c;
     c.gather = false;
-    EXPECT_FALSE(find_way({.options = {.method = Method::monte_carlo, .classical = c}}));
-    EXPECT_FALSE(find_way({.options = {.method = Method::wavelet, .oracle = LinkOracle::power, .classical = c}}));
+    EXPECT_FALSE(find_method_form({.options = {.method = Method::monte_carlo, .classical = c}}));
+    EXPECT_FALSE(
+        find_method_form({.options = {.method = Method::wavelet, .oracle = LinkOracle::power, .classical = c}}));
     c.ambient = true;
-    const Result<Way> wrong = find_way({.options = {.method = Method::matrix, .classical = c}});
+    const Result<MethodForm> wrong = find_method_form({.options = {.method = Method::matrix, .classical = c}});
     ASSERT_FALSE(wrong);
     EXPECT_NE(wrong.error().message.find("progressive, substructuring"), std::string::npos) << wrong.error().message;
-    EXPECT_EQ(find_way({.options = {.classical = c}})->method, Method::progressive);
+    EXPECT_EQ(find_method_form({.options = {.classical = c}})->method, Method::progressive);
 }
 
 TEST(Recipes, PresetOptionsThatTheirMethodSupports) {

@@ -6,7 +6,7 @@
 #include "exitance/gather/element_gather.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/options/support.hpp"
-#include "exitance/methods/plan/way_forecast.hpp"
+#include "exitance/methods/plan/delivery_forecast.hpp"
 #include "exitance/processes/distributed.hpp"
 
 namespace exitance {
@@ -22,7 +22,7 @@ bool may_deliver(const SolveOptions& options) {
 }
 
 MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
-    MethodChoice out{.options = options, .forecast = forecast_ways(stage, options, may_deliver(options))};
+    MethodChoice out{.options = options, .forecast = forecast_delivery(stage, options, may_deliver(options))};
     const auto choose = [&](Method method, std::string why) {
         out.options.method = method, out.why = std::move(why);
         return out;

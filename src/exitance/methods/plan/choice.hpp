@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/methods/plan/way_forecast.hpp"
+#include "exitance/methods/plan/delivery_forecast.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -11,9 +11,9 @@ namespace exitance {
 /// Options with the chosen method and basis in place of `auto`, and the reason for the choice.
 struct MethodChoice {
     SolveOptions options;
-    std::string why = {};       ///< Reason; empty if the user chose.
-    WayForecast forecast = {};  ///< Forecast of the work; infinite values if there is no choice.
-    bool is_second = false;     ///< True if the preferred method does not run on several processes.
+    std::string why = {};            ///< Reason; empty if the user chose.
+    DeliveryForecast forecast = {};  ///< Forecast of the work; infinite values if there is no choice.
+    bool is_second = false;          ///< True if the preferred method does not run on several processes.
 };
 
 /// True if the relaxation updates all unknowns at once, so that several processes can share its steps.

@@ -63,8 +63,8 @@ std::array<float, 4> corner_weights(const Patch& patch, Vec2 uv) {
 
 bool is_base(const ElementTree& tree, ElementId e) {
     const ElementId parent = tree.parent(e);
-    if (!parent.is_none() && tree.way(parent) == Cut::fan) return false;
-    return tree.is_leaf(e) || tree.way(e) == Cut::fan;
+    if (!parent.is_none() && tree.cut_of(parent) == Cut::fan) return false;
+    return tree.is_leaf(e) || tree.cut_of(e) == Cut::fan;
 }
 
 TransportLayout make_layout(const Solution& solution, std::span<const std::uint32_t> receivers) {

@@ -1,4 +1,4 @@
-#include "exitance/transport/rooms.hpp"
+#include "exitance/transport/piece_groups.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -9,8 +9,8 @@
 #include "exitance/transport/element_rays.hpp"
 
 namespace exitance {
-Rooms find_rooms(const Stage& stage, const ElementTree& tree, std::uint64_t seed) {
-    constexpr std::size_t rays_each = 8, max_rooms = 64;
+PieceGroups find_piece_groups(const Stage& stage, const ElementTree& tree, std::uint64_t seed) {
+    constexpr std::size_t rays_each = 8, max_groups = 64;
     const std::vector<ElementId>& roots = tree.roots();
     Field<ElementId, std::uint32_t> root(tree.size());
     for (std::size_t i = 0; i < roots.size(); ++i) root[roots[i]] = static_cast<std::uint32_t>(i);
@@ -26,20 +26,20 @@ Rooms find_rooms(const Stage& stage, const ElementTree& tree, std::uint64_t seed
             rays.cast(leaves[i], hash(seed, static_cast<std::uint64_t>(Stream::visibility), i),
                       std::span(hits).subspan(rays_each * i, rays_each));
     });
-    DisjointSets rooms(roots.size());
+    DisjointSets groups(roots.size());
     for (std::size_t i = 0; i < hits.size(); ++i)
-        if (hits[i] < leaves.size()) rooms.unite(root[leaves[i / rays_each]], root[leaves[hits[i]]]);
+        if (hits[i] < leaves.size()) groups.unite(root[leaves[i / rays_each]], root[leaves[hits[i]]]);
 
     std::vector<double> area(roots.size());
     for (std::size_t i = 0; i < roots.size(); ++i)
-        area[rooms.root(static_cast<std::uint32_t>(i))] += tree.area(roots[i]);
+        area[groups.root(static_cast<std::uint32_t>(i))] += tree.area(roots[i]);
     std::vector<std::uint32_t> by_area(roots.size()), number(roots.size());
-    Rooms out{std::vector<std::uint32_t>(roots.size()), hits.size()};
+    PieceGroups out{std::vector<std::uint32_t>(roots.size()), hits.size()};
     std::iota(by_area.begin(), by_area.end(), 0u);
     std::stable_sort(by_area.begin(), by_area.end(), [&](auto a, auto b) { return area[a] > area[b]; });
     for (std::size_t i = 0; i < by_area.size(); ++i)
-        number[by_area[i]] = static_cast<std::uint32_t>(std::min(i, max_rooms - 1));
-    for (std::size_t i = 0; i < roots.size(); ++i) out.of_root[i] = number[rooms.root(static_cast<std::uint32_t>(i))];
+        number[by_area[i]] = static_cast<std::uint32_t>(std::min(i, max_groups - 1));
+    for (std::size_t i = 0; i < roots.size(); ++i) out.of_root[i] = number[groups.root(static_cast<std::uint32_t>(i))];
     return out;
 }
 

@@ -1,4 +1,4 @@
-#include "exitance/methods/plan/way_forecast.hpp"
+#include "exitance/methods/plan/delivery_forecast.hpp"
 
 #include <fmt/format.h>
 
@@ -122,8 +122,8 @@ double further_attempts(double spread, double error, const Counts& counts, doubl
 
 }  // namespace
 
-WayForecast forecast_ways(const Stage& stage, const SolveOptions& options, bool may_deliver) {
-    WayForecast out;
+DeliveryForecast forecast_delivery(const Stage& stage, const SolveOptions& options, bool may_deliver) {
+    DeliveryForecast out;
     if (!ElementGather::suits(stage)) return out;
     const double error = options.error_target();
     const std::vector<Piece> lit = stage.lit_pieces();
@@ -139,7 +139,7 @@ WayForecast forecast_ways(const Stage& stage, const SolveOptions& options, bool 
     return out;
 }
 
-std::string describe(const WayForecast& forecast) {
+std::string describe(const DeliveryForecast& forecast) {
     const std::string matrix =
         fmt::format("work of about {:.2g} rays by sums over elements, {:.2g} by rays", forecast.sums, forecast.rays);
     return std::isfinite(forecast.links) ? fmt::format("{}, {:.2g} by links", matrix, forecast.links) : matrix;

@@ -1,4 +1,4 @@
-#include "exitance/methods/plan/way_forecast.hpp"
+#include "exitance/methods/plan/delivery_forecast.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,13 +39,13 @@ Plan plan_at(const Scene& scene, double error) {
 // The expected choices were measured by solving with each way (`solve --threads 1`, user time). The constants of the
 // forecast were derived from other scenes.
 
-TEST(WayForecast, SumsInAnEmptyRoomOfManySides) {
+TEST(DeliveryForecast, SumsInAnEmptyRoomOfManySides) {
     const Scene room = round_room(40);  // 116 pieces
     EXPECT_TRUE(plan_at(room, 0.02).sums);
     EXPECT_TRUE(plan_at(room, 0.005).sums);
 }
 
-TEST(WayForecast, UsesLinksIfConstantElementsNeedSeveralAttempts) {
+TEST(DeliveryForecast, UsesLinksIfConstantElementsNeedSeveralAttempts) {
     const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
     EXPECT_EQ(plan_at(shaft, 0.02).options.method, Method::matrix);
     const Plan fine = plan_at(shaft, 0.002);
@@ -53,27 +53,27 @@ TEST(WayForecast, UsesLinksIfConstantElementsNeedSeveralAttempts) {
     EXPECT_TRUE(fine.knobs.links_deliver);
 }
 
-TEST(WayForecast, SumsInALowRoomWithUniformLight) {
+TEST(DeliveryForecast, SumsInALowRoomWithUniformLight) {
     const Scene low = box_scene(12, 9, 1.5, 0.8, 10);
     EXPECT_EQ(plan_at(low, 0.002).options.method, Method::matrix);
     EXPECT_TRUE(plan_at(low, 0.002).sums);
 }
 
-TEST(WayForecast, PrefersSumsToLinksForManyPolygons) {
+TEST(DeliveryForecast, PrefersSumsToLinksForManyPolygons) {
     const Scene room = round_room(100);
     const Stage stage(room);
-    const WayForecast forecast = forecast_ways(stage, {.error = 0.005}, true);
+    const DeliveryForecast forecast = forecast_delivery(stage, {.error = 0.005}, true);
     ASSERT_TRUE(std::isfinite(forecast.links));
     EXPECT_LT(2 * forecast.sums, forecast.links);
 }
 
-TEST(WayForecast, EvaluatesNothingWithOcclusion) {
+TEST(DeliveryForecast, EvaluatesNothingWithOcclusion) {
     const Scene room = built_scene("cornell");
-    const WayForecast forecast = forecast_ways(Stage(room), {.error = 0.001}, true);
+    const DeliveryForecast forecast = forecast_delivery(Stage(room), {.error = 0.001}, true);
     EXPECT_FALSE(forecast.takes_sums() || forecast.takes_links());
 }
 
-TEST(WayForecast, DeliversRequestedLinksIfTheyAreCheaperThanSums) {
+TEST(DeliveryForecast, DeliversRequestedLinksIfTheyAreCheaperThanSums) {
     const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
     const Stage stage(shaft);
     const auto delivers = [&](double error) {
@@ -83,14 +83,14 @@ TEST(WayForecast, DeliversRequestedLinksIfTheyAreCheaperThanSums) {
     EXPECT_TRUE(delivers(0.002));
 }
 
-TEST(WayForecast, IsTheSameOnAnyNumberOfThreads) {
+TEST(DeliveryForecast, IsTheSameOnAnyNumberOfThreads) {
     const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
     const Stage stage(shaft);
     const auto on = [&](int count) {
         set_threads(count);
-        return forecast_ways(stage, {.error = 0.002}, true);
+        return forecast_delivery(stage, {.error = 0.002}, true);
     };
-    const WayForecast one = on(1), three = on(3);
+    const DeliveryForecast one = on(1), three = on(3);
     set_threads(0);
     EXPECT_EQ(one.sums, three.sums);
     EXPECT_EQ(one.rays, three.rays);

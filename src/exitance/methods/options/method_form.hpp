@@ -16,29 +16,30 @@ enum class Form : std::uint8_t {
 };
 
 /// A method in one of its forms.
-struct Way {
+struct MethodForm {
     Form form;
     Method method;
 };
 
-/// A set of ways.
-class Ways {
+/// A set of methods in their forms.
+class MethodForms {
   public:
-    constexpr Ways() = default;
-    constexpr Ways(Form form, std::initializer_list<Method> methods) {
+    constexpr MethodForms() = default;
+    constexpr MethodForms(Form form, std::initializer_list<Method> methods) {
         for (const Method method : methods) bits_ |= bit({form, method});
     }
 
-    constexpr bool contains(Way way) const { return (bits_ & bit(way)) != 0; }
+    constexpr bool contains(MethodForm method_form) const { return (bits_ & bit(method_form)) != 0; }
     constexpr bool empty() const { return bits_ == 0; }
-    friend constexpr Ways operator|(Ways a, Ways b) {
+    friend constexpr MethodForms operator|(MethodForms a, MethodForms b) {
         a.bits_ |= b.bits_;
         return a;
     }
 
   private:
-    static constexpr std::uint64_t bit(Way way) {
-        return std::uint64_t(1) << (16 * static_cast<unsigned>(way.form) + static_cast<unsigned>(way.method));
+    static constexpr std::uint64_t bit(MethodForm method_form) {
+        return std::uint64_t(1) << (16 * static_cast<unsigned>(method_form.form) +
+                                    static_cast<unsigned>(method_form.method));
     }
 
     std::uint64_t bits_ = 0;
