@@ -14,7 +14,6 @@ namespace {
 // Work in units of VisibilityWorkspace::work, about that of a ray, measured by `bench/exitance-bench`.
 constexpr double work_of_shaft = 10;   ///< Work of a search for the blockers between a polygon and a source.
 constexpr double work_of_blocker = 6;  ///< Work per blocker that is clipped from a source, if there are many fragments.
-constexpr double work_of_integral = 20;  ///< Work per integral of a directed radiance over a fragment.
 /// Exact light is tried again if rays need more than this many times the work that it was allowed. The work allowed for
 /// exact light is then the work of the rays, divided by this number. Derived from the cost of trying in vain: at most a
 /// quarter of the rays.
@@ -30,7 +29,7 @@ PlaceLight::PlaceLight(const DirectLight& direct, const RayTracer& tracer) : dir
     for (const DirectLight::Emitter& emitter : direct.emitters()) {
         const bool is_directed = emitter.radiance.is_directed();
         const double pieces = static_cast<double>(emitter.pieces.size());
-        preparing_ += (work_of_shaft + (is_directed ? work_of_integral : 0)) * pieces;
+        preparing_ += (work_of_shaft + (is_directed ? VisibilityWorkspace::work_of_integral : 0)) * pieces;
         // This bound holds even if every piece blocks every source. Integrals over fragments have no such bound.
         max_work_ += is_directed ? HUGE_VAL : pieces * static_cast<double>(direct.occluders().pieces().size());
     }
@@ -135,7 +134,7 @@ double PlaceLight::exact_work(const ReceiverLight& light) const {
         const double blockers = source.count;
         work += 1 + work_of_blocker * blockers;
         const RelativeRadiance& radiance = direct_->emitters()[source.emitter].radiance;
-        if (radiance.is_directed()) work += work_of_integral * (1 + blockers);
+        if (radiance.is_directed()) work += VisibilityWorkspace::work_of_integral * (1 + blockers);
         if (radiance.is_picture()) return HUGE_VAL;  // integrating a picture costs more than any number of rays
     }
     return light.behind.empty() ? work : work + exact_work(light.behind[0]);

@@ -42,7 +42,7 @@ std::vector<std::pair<Point, Point>> cover_ends(const Occluders& occluders, Regi
         const ConvexPiece& piece = occluders.pieces()[p];
         if (occluders.is_own(piece.region, number)) return false;
         // Steeper faces cross the plane within 1e-4 of the scene's size; their contact lines are enough.
-        constexpr double steepest = 0.01;  // sine, derived from the coplanarity tolerance (1e-6 of the size) / 1e-4
+        constexpr double steepest = 0.01;  // sine, derived from coplanar_share / 1e-4
         if (norm(cross(piece.plane.n, region.plane.n)) > steepest) return false;
         heights.clear();
         for (const Point& c : occluders.corners(p)) heights.push_back(region.plane.signed_distance(c) - lift);
@@ -54,9 +54,7 @@ std::vector<std::pair<Point, Point>> cover_ends(const Occluders& occluders, Regi
                 add_crossing(occluders.corners(p), heights, level, out);
         return false;
     };
-    // Share of the scene's size, derived from the largest tolerance of coplanar surfaces.
-    constexpr double thickest = 1e-6;
-    const ConvexRegion near = around(region, 2 * thickest * occluders.scene().size());
+    const ConvexRegion near = around(region, 2 * coplanar_share * occluders.scene().size());
     for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
         occluders.visit_region(size, near, look, region.plane.n);
     return out;

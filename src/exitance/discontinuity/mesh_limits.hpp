@@ -1,5 +1,7 @@
 #pragma once
 
+#include "exitance/scene/scene.hpp"
+
 namespace exitance {
 
 /// Thresholds of a discontinuity mesh, as shares of the requested error, of the total area or of the scene's size.
@@ -36,7 +38,7 @@ constexpr double tried_area = 1e-3;  // derived from the 1,000 sample points tha
 
 /// Share of the scene's size. Triangles without a longer edge are not bisected, and light at nodes on borders is
 /// evaluated this far inside the region.
-constexpr double shortest_edge = 1e-6;  // derived from the distance up to which surfaces count as coplanar
+constexpr double shortest_edge = coplanar_share;
 /// Share of the scene's size. Line trees merge points that are closer together than this.
 constexpr double one_place = 1e-7;  // derived from shortest_edge: a tenth of it
 

@@ -112,9 +112,7 @@ double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDeman
 double LocalPass::tolerated_misfit_squared(ElementId e, const SampledElement& sampled,
                                            const LocalPassDemand& demand) const {
     const double share = allowed_misfit(e, sampled.light, demand);
-    // Derived from the chi-square distribution: with five degrees of freedom, noise alone exceeds 2.3 times its
-    // expected misfit once in twenty times.
-    return share * share + 2.3 * sampled.noise_in_misfit;
+    return share * share + noise_misfit_bound * sampled.noise_in_misfit;
 }
 
 bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
@@ -257,8 +255,7 @@ void LocalPass::check_between_nodes(ElementId e, SampledElement& sampled, const 
     sampled.rays += rays * count;
     const double allowed = allowed_misfit(e, sampled.light, demand);
     if (!(misfit > allowed * allowed + 3 * noise)) return;
-    // Derived from five degrees of freedom, as in tolerated_misfit_squared().
-    sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
+    sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + noise_misfit_bound * sampled.noise_in_misfit);
 }
 
 /// Squared misfit allowed on each of many small elements, from the present misfits of all.

@@ -74,8 +74,7 @@ void LocalPass::check_strips(ElementId e, SampledElement& sampled, const Reflect
     // The mean noise of 64 places varies by a quarter, so that a misfit above twice its expected value is no noise.
     if (!(misfit > allowed * allowed + 2 * noise)) return;
     // The misfit includes the polynomial's own noise, as in `fit_gathered`.
-    // 2.3: derived from five degrees of freedom, as in tolerated_misfit_squared().
-    sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
+    sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + noise_misfit_bound * sampled.noise_in_misfit);
     for (std::size_t k = 0; k < 2; ++k) sampled.misfit_along[k] = strips[k].between();
 }
 

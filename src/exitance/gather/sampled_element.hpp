@@ -8,6 +8,10 @@
 
 namespace exitance {
 
+/// Largest misfit that noise alone explains, as a multiple of the misfit expected of it. Derived from the chi-square
+/// distribution: with five degrees of freedom, noise exceeds it once in twenty times.
+inline constexpr double noise_misfit_bound = 2.3;
+
 /// A polynomial fitted to irradiance gathered at the places of an element, and statistics of the places.
 struct SampledElement {
     /// Coefficients of ElementPolynomials, W/m^2.

@@ -271,8 +271,7 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
                                    [](RegionId a, RegionId b) { return a.value < b.value; });
     };
     // A surface that covers a point may be above it by this much (Occluders::is_covered).
-    constexpr double coplanar = 1e-6;  // share of the scene's size, equal to that of Occluders
-    const double near = coplanar * scene_->size(), highest = std::max(near, gap);
+    const double near = coplanar_share * scene_->size(), highest = std::max(near, gap);
     Box box;
     for (RegionId region : regions)
         for (const std::vector<Point>& loop : scene_->regions()[region].loops)

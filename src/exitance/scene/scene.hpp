@@ -89,6 +89,9 @@ struct Region {
 
 constexpr std::uint8_t max_stacked = 7;
 
+/// Faces closer than this count as coplanar, as a share of the scene's size and of the smaller face's box.
+constexpr double coplanar_share = 1e-6, coplanar_share_of_face = 1e-3;
+
 /// A diagnostic about an input for the user, printed by `exitance check`.
 struct Finding {
     enum class Kind { error, warning, repair };

@@ -14,9 +14,6 @@ namespace {
 /// Cosine between normals below which a face is regarded as perpendicular, derived from the strip that the lift misses
 /// below it: that share of the lift, about 1e-9 of the scene's size.
 constexpr double perpendicular = 1e-3;
-/// Stacked faces: limit on their distance as a share of the scene's size and of the smaller face's box; derived from
-/// ConvexPiece::thickness.
-constexpr double stacked_share = 1e-6, stacked_share_of_face = 1e-3;
 /// Share of a face's area from which the points below close faces matter, since rays from them are lost; derived from a
 /// fifth of the error 1e-3 of rows of view factors. With 3e-5, solves of furnished rooms take up to 10% longer.
 constexpr double negligible_share = 2e-4;
@@ -115,7 +112,7 @@ class GapFinder {
         }
         if (high <= rounding_ || low >= reach) return false;
         const double thickness = std::max(
-            rounding_, std::min(stacked_share * scene_.size(), stacked_share_of_face * boxes_[b.value].diagonal()));
+            rounding_, std::min(coplanar_share * scene_.size(), coplanar_share_of_face * boxes_[b.value].diagonal()));
         if (is_within(outline, plane, thickness) || is_within(scene_.outline(s), plane_of(scene_, b), thickness))
             return false;
         clip(outline, {plane.n, plane.offset}, above_);

@@ -12,8 +12,6 @@
 namespace exitance {
 namespace {
 
-constexpr double coplanar_share = 1e-6;  ///< Share of the scene's size: planes closer than this count as one plane.
-
 /// Distance by which a piece is raised off its plane above the pieces that it covers, metres. All levels stay within
 /// half of the thickness, so that other code treats the stack as one plane.
 double stack_height(std::uint8_t level, double thickness) {
@@ -164,7 +162,8 @@ void Occluders::add_piece(std::span<const Point> corners, RegionId region, Surfa
                       plane,
                       0};
     // The tolerance shrinks with the piece, so that small objects stay distinct from the surface that supports them.
-    piece.thickness = std::max(rounding_, std::min(coplanar_share * scene_->size(), 1e-3 * box_of(corners).diagonal()));
+    piece.thickness = std::max(
+        rounding_, std::min(coplanar_share * scene_->size(), coplanar_share_of_face * box_of(corners).diagonal()));
     const Vec3 lifted = stack_height(scene_->regions()[region].level, piece.thickness) * plane.n;
     for (const Point& p : corners) corners_.push_back(p + lifted);
     piece.plane.offset += dot(lifted, plane.n);

@@ -14,8 +14,7 @@
 namespace exitance {
 namespace {
 
-constexpr double rounded_sine = 1e-14;   ///< Sine of an angle that may be due to rounding alone.
-constexpr double work_of_integral = 20;  ///< Work of the integral of a directed radiance over a fragment.
+constexpr double rounded_sine = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
 
 using Workspace = VisibilityWorkspace;
 
@@ -197,7 +196,7 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
         return directed_form_factor(n, scratch.source, radiance);
     double& known = known_far_factor(occluders, source, n);
     // Count the work even if the result is known, so that the count does not depend on earlier calls.
-    scratch.work += work_of_integral;
+    scratch.work += Workspace::work_of_integral;
     if (known < 0) known = directed_form_factor(n, scratch.source, radiance);
     return known;
 }
@@ -225,7 +224,7 @@ double finish(const Occluders& occluders, PieceId source, const Normal& n, std::
     if (light.radiance.is_directed()) {
         if (scratch.shadows.empty()) return whole_form_factor(occluders, source, n, scratch, light.radiance);
         if (!cut_lit(cut, scratch)) return 0;
-        scratch.work += work_of_integral * static_cast<double>(scratch.lit.size());
+        scratch.work += Workspace::work_of_integral * static_cast<double>(scratch.lit.size());
         if (light.radiance.is_picture()) scratch.work += work_of_picture;
         if (scratch.gave_up()) return 0;
         return without_rounding(scratch.lit.form_factor(n, light.radiance, scratch.clipped), n, scratch.source);

@@ -64,6 +64,8 @@ class VisibilityWorkspace {
     /// cut). Above `max_work` it gives up and returns any value; the work depends on its arguments alone.
     double work = 0, max_work = HUGE_VAL;
     bool gave_up() const { return work > max_work; }
+    /// Work of the integral of a directed radiance over a fragment. Measured by `bench/exitance-bench`.
+    static constexpr double work_of_integral = 20;
 
     /// The last piece that hid a source completely. It is tested first because it will probably hide the source again.
     /// If it does not, the usual search follows, so the result does not depend on it. A workspace may be reused with

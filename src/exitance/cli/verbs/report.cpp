@@ -20,6 +20,7 @@
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/statistics_json.hpp"
 #include "exitance/measure/floor_rooms.hpp"
+#include "exitance/measure/glare/room_observers.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -122,7 +123,7 @@ Result<void> add_working_planes(const ReportArguments& arguments, const Scene& s
 /// Adds the planes and observers that the requirements of tasks need, if the user gave none: a working plane at 0.75 m,
 /// a cylindrical one at the eyes of seated people, and automatic observers.
 ReportArguments with_needs_of_tasks(ReportArguments arguments, std::span<const LightingTask> tasks) {
-    constexpr double working_height = 0.75, seated = 1.2;  // metres, the usual heights of EN 12464-1
+    constexpr double working_height = 0.75;  // metres, the usual height of EN 12464-1
     const auto need = [&](const std::string& quantity) {
         for (const std::string& words : arguments.tasks)
             for (const LightingTask& task : tasks)
@@ -139,7 +140,7 @@ ReportArguments with_needs_of_tasks(ReportArguments arguments, std::span<const L
         arguments.working_planes.emplace_back().height = working_height;
     if (need("Ez") && !has_plane(true)) {
         PlaneRequest& plane = arguments.working_planes.emplace_back();
-        plane.height = seated, plane.is_cylindrical = true;
+        plane.height = seated_eye_height, plane.is_cylindrical = true;
     }
     if (need("UGR") && arguments.observers.empty()) arguments.observers.emplace_back("auto");
     return arguments;

@@ -80,10 +80,10 @@ bool starts_with_number(const std::vector<std::string_view>& fields) {
     return parse_number(fields[0]).has_value();
 }
 
-/// Corrects the date of a row and returns false if there is no such date. 29 February is given the year 2020, a leap
-/// year, since typical years combine months of different years.
+/// Corrects the date of a row and returns false if there is no such date. 29 February is given `leap_year`, since
+/// typical years combine months of different years.
 bool mend_date(DataLine& row) {
-    constexpr int unknown_year = 2021, leap_year = 2020;
+    constexpr int unknown_year = 2021;
     if (row.year < 1) row.year = unknown_year;
     if (is_date(row.year, row.month, row.day)) return true;
     if (row.month != 2 || row.day != 29) return false;
@@ -345,7 +345,6 @@ const WeatherHour* Weather::at(int month, int day, double hour) const {
 
 std::string Weather::not_a_year() const {
     constexpr std::size_t hours_a_day = 24, leap_day = 31 + 29;
-    constexpr int leap_year = 2020;
     std::array<int, 366 * hours_a_day> count{};
     for (const WeatherHour& h : hours)
         ++count[static_cast<std::size_t>(day_of_year(leap_year, h.month, h.day) - 1) * hours_a_day +

@@ -72,7 +72,7 @@ class WeaReader {
         double time = 0, direct = 0, diffuse = 0;
         if (!(words >> now.month >> now.day >> time >> direct >> diffuse))
             return lines_.error("is neither a key nor 'month day hour direct diffuse'");
-        constexpr int leap_year = 2020, hours_a_day = 24;
+        constexpr int hours_a_day = 24;
         if (!is_date(leap_year, now.month, now.day) || !(time >= 0 && time <= hours_a_day) || !std::isfinite(direct) ||
             !std::isfinite(diffuse))
             return lines_.error("is not an hour of a year with its light");

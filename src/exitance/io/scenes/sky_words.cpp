@@ -76,7 +76,6 @@ bool read_time(std::string_view word, Words& out) {
     std::size_t i = 0;
     LocalTime time;
     if (has_year) time.year = parts[i++];
-    constexpr int leap_year = 2020;
     if (!has_year && parts[i] == 2 && parts[i + 1] == 29) time.year = leap_year;
     time.month = parts[i], time.day = parts[i + 1];
     const int hour = parts[i + 2], minute = parts[i + 3], second = has_seconds ? parts[i + 4] : 0;

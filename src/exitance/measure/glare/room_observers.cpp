@@ -12,8 +12,6 @@
 namespace exitance {
 namespace {
 
-constexpr double seated = 1.2;  ///< Height of the eyes of a seated person [EN12464], metres.
-
 /// True if nothing is within the clearance of an eye, in ten directions, and the eye is not inside a body.
 bool is_free(const Stage& stage, const Point& eye) {
     constexpr int around = 8;
@@ -48,7 +46,7 @@ struct Side {
 /// The free place of a side that is nearest to the middle of its wall, on a lattice of 0.1 m; none if there is none.
 std::optional<Point> place_at(const Stage& stage, const FloorRooms& rooms, std::size_t room, const Side& side) {
     constexpr double spacing = 0.1, from_wall = 0.3;  // metres; derived from observer_clearance
-    const double eye_height = std::min(seated, 0.5 * rooms[room].height);
+    const double eye_height = std::min(seated_eye_height, 0.5 * rooms[room].height);
     const auto deep = static_cast<int>(0.5 * norm(side.across) / spacing);
     const auto wide = static_cast<int>(0.5 * norm(side.along) / spacing);
     struct Place {

@@ -10,6 +10,8 @@ struct LocalTime {
     double hour = 12;  ///< Hour of the day, 0 to 24, including the fraction.
     double zone = 0;   ///< Time zone, hours ahead of universal time.
 };
+/// The year of dates without one, if there is a 29 February among them; derived from the calendar: any leap year does.
+inline constexpr int leap_year = 2020;
 bool is_date(int year, int month, int day);
 int day_of_year(int year, int month, int day);  ///< Returns the day of the year: 1 for 1 January.
 /// Returns the days since noon of 1 January 4713 BC, universal time.
