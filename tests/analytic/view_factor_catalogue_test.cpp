@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "exitance/view_factors/view_factors.hpp"
+#include "support/dense_view_factors.hpp"
 
 namespace exitance {
 namespace {
@@ -288,9 +288,8 @@ TEST(ViewFactorCatalogue, HasAtLeastAHundredExactConfigurations) {
     for (std::size_t k = 0; k < all.size(); ++k) {
         Configuration c = all[k];
         place(c, static_cast<int>(k));
-        Progress progress;
         const Scene scene = scene_of(c.faces);
-        const ViewFactors table = *compute_view_factors(scene, 1e-8, progress, StopRequest());
+        const ViewFactors table = dense_view_factors(scene, 1e-8);
         for (const auto& [from, to, F] : c.exact)
             EXPECT_NEAR(table.row(from)[to], F, c.tolerance) << c.name << " " << k << ": " << from << " to " << to;
     }
@@ -308,9 +307,8 @@ TEST(ViewFactorCatalogue, SpheresOfTrianglesSeeEachOtherByTheirAreas) {
         const std::size_t n = c.faces.size();
         for (const Outline& face : sphere(1, cuts, true)) c.faces.push_back(face);
         place(c, number);
-        Progress progress;
         const double tolerance = 1e-3;
-        const ViewFactors table = *compute_view_factors(scene_of(c.faces), tolerance, progress, StopRequest());
+        const ViewFactors table = dense_view_factors(scene_of(c.faces), tolerance);
         double inside = 0, outside = 0, received = 0;
         for (std::size_t i = 0; i < 2 * n; ++i) (i < n ? inside : outside) += table.areas[i];
         for (std::size_t i = 0; i < 2 * n; ++i) {

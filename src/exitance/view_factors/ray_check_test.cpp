@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
@@ -31,7 +32,7 @@ Scene squares_with_a_board(bool with_board) {
 
 SparseFactors table_of(const Scene& scene) {
     Progress progress;
-    return sparse_from(*compute_view_factors(scene, 1e-5, progress, StopRequest()));
+    return compute_entry_factors(scene, {.tolerance = 1e-5}, nullptr, progress, StopRequest());
 }
 
 // view factor of parallel unit squares at a distance of 1 [Howell]

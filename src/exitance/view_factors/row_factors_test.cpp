@@ -9,7 +9,7 @@
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/row_check.hpp"
-#include "exitance/view_factors/view_factors.hpp"
+#include "support/dense_view_factors.hpp"
 
 namespace exitance {
 namespace {
@@ -90,8 +90,7 @@ TEST(RowFactors, RowsReachTheRequestedErrorComparedWithQuadrature) {
     const Scene scene = furnished_room();
     const double R = 3e-3;
     const SparseFactors table = factors_of(scene, {.error = R});
-    Progress progress;
-    const ViewFactors exact = *compute_view_factors(scene, 1e-4, progress, StopRequest());
+    const ViewFactors exact = dense_view_factors(scene, 1e-4);
     double squares = 0;
     for (std::size_t i = 0; i < table.size(); ++i) {
         EXPECT_LE(table.row_errors[i], R) << i;
@@ -106,8 +105,7 @@ TEST(RowFactors, RowsReachTheRequestedErrorComparedWithQuadrature) {
 TEST(RowFactors, RowsSeldomExceedTheRequestedError) {
     const Scene scene = furnished_room();
     const double R = 3e-3;
-    Progress progress;
-    const ViewFactors exact = *compute_view_factors(scene, 1e-4, progress, StopRequest());
+    const ViewFactors exact = dense_view_factors(scene, 1e-4);
     std::size_t rows = 0, above = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const SparseFactors table = factors_of(scene, {.error = R, .seed = seed});

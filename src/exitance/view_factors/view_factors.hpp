@@ -4,14 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "exitance/base/progress.hpp"
-#include "exitance/base/result.hpp"
-#include "exitance/scene/scene.hpp"
-
 namespace exitance {
 
-/// View factors between all faces of a scene, in the order of its file. Row i is for gathering: F_ij is the share of
-/// the diffuse flux leaving face i that reaches the front of face j directly.
+/// View factors between all faces of a scene as a full matrix, in the order of its file. Row i is for gathering: F_ij
+/// is the share of the diffuse flux leaving face i that reaches the front of face j directly.
 struct ViewFactors {
     std::vector<double> areas;       ///< Area of every face, m^2.
     std::vector<double> emittances;  ///< 1 - reflectance, mean over the bands, one per face.
@@ -29,14 +25,5 @@ struct ViewFactors {
     std::size_t size() const { return areas.size(); }
     std::span<const double> row(std::size_t i) const { return std::span(factors).subspan(i * size(), size()); }
 };
-
-/// Computes all view factors of a scene. Faces are treated individually, and rows are not normalized. Faces block light
-/// from both sides and receive it at their front. Rows are computed in parallel, each from points of its own receiver.
-/// If two rows disagree on a pair of faces, both entries are recomputed more accurately. Deterministic on any number of
-/// threads.
-/// tolerance  relative error of every entry above 1e-6; 1e-12 to 0.1
-/// Returns an error of code `limit` if a stop is requested before the last row is finished. Memory: 8 bytes per pair.
-Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
-                                         const StopRequest& stop);
 
 }  // namespace exitance

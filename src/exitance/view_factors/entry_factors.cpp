@@ -1,4 +1,4 @@
-#include "exitance/view_factors/view_factors.hpp"
+#include "exitance/view_factors/entry_factors.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/processes/distributed.hpp"
-#include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/row_worker.hpp"
 #include "exitance/view_factors/view_pairs.hpp"
 
@@ -238,17 +237,6 @@ Result<void> fill(const Scene& scene, const EntryFactorOptions& options, RawRowS
 }
 
 }  // namespace
-
-Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
-                                         const StopRequest& stop) {
-    ViewFactors table = empty_table(scene);
-    std::vector<std::uint8_t> finished(table.size());
-    if (const Result<void> done = fill(scene, {tolerance}, nullptr, progress, stop, table, finished); !done)
-        return done.error();
-    add_row_sums(table);
-    find_defects(table);
-    return table;
-}
 
 SparseFactors compute_entry_factors(const Scene& scene, const EntryFactorOptions& options, RawRowStore* store,
                                     Progress& progress, const StopRequest& stop) {

@@ -1,7 +1,8 @@
-#include "exitance/view_factors/view_factors.hpp"
+#include "exitance/view_factors/entry_factors.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
+#include "support/dense_view_factors.hpp"
 #include "support/places.hpp"
 
 namespace exitance {
@@ -32,9 +34,7 @@ Scene scene_of_faces(const std::vector<Outline>& outlines) {
 }
 
 ViewFactors factors_of(const Scene& scene, double tolerance) {
-    Progress progress;
-    StopRequest stop;
-    return *compute_view_factors(scene, tolerance, progress, stop);
+    return dense_view_factors(scene, tolerance);
 }
 
 /// Adds the six faces of a box, each split into k x k pieces, with fronts inwards or outwards.
@@ -65,7 +65,7 @@ Scene room_with_blocks() {
     return scene_of_faces(faces);
 }
 
-TEST(ViewFactors, RowsOfABoxSumToOneAndAreReciprocal) {
+TEST(EntryFactors, RowsOfABoxSumToOneAndAreReciprocal) {
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {5, 4, 3}, true, 2);
     const ViewFactors table = factors_of(scene_of_faces(faces), 1e-9);
@@ -74,7 +74,7 @@ TEST(ViewFactors, RowsOfABoxSumToOneAndAreReciprocal) {
     EXPECT_EQ(table.emittances[0], 0.75);
 }
 
-TEST(ViewFactors, RowsOfARoomWithBlocksSumToOneWithoutNormalization) {
+TEST(EntryFactors, RowsOfARoomWithBlocksSumToOneWithoutNormalization) {
     const Scene scene = room_with_blocks();
     const ViewFactors coarse = factors_of(scene, 1e-4), fine = factors_of(scene, 1e-6);
     for (double sum : coarse.row_sums) EXPECT_NEAR(sum, 1, 1e-4);
@@ -83,7 +83,7 @@ TEST(ViewFactors, RowsOfARoomWithBlocksSumToOneWithoutNormalization) {
     EXPECT_LT(fine.reciprocity_defect, 2e-6);
 }
 
-TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
+TEST(EntryFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
     // Ten blocks, one on the floor; walls see each other between them.
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {2, 2, 1}, true, 1);
@@ -137,7 +137,7 @@ Scene room_with_a_stool() {
     return scene_of_faces(faces);
 }
 
-TEST(ViewFactors, SumToOneForALegUnderAnOverhangingSeatBetweenSlantingWalls) {
+TEST(EntryFactors, SumToOneForALegUnderAnOverhangingSeatBetweenSlantingWalls) {
     const ViewFactors table = factors_of(room_with_a_stool(), 1e-4);
     ASSERT_EQ(table.size(), 15U);
     // If rules were chosen by distances to bounding boxes, one sum would be 1.005: walls would seem near everywhere, no
@@ -152,7 +152,7 @@ TEST(ViewFactors, SumToOneForALegUnderAnOverhangingSeatBetweenSlantingWalls) {
     }
 }
 
-TEST(ViewFactors, AreReciprocalForAWallCloselyBehindBoards) {
+TEST(EntryFactors, AreReciprocalForAWallCloselyBehindBoards) {
     // The wall sees between the boards from strips as wide as the gap behind them. Rules whose points all miss the
     // strips agree, but their entries are wrong by 0.6%.
     std::vector<Outline> faces;
@@ -201,7 +201,7 @@ std::size_t entries_within(double share, const ViewFactors& coarse, const ViewFa
     return entries;
 }
 
-TEST(ViewFactors, EveryEntryOfATownAbove1e6IsWithinTheTolerance) {
+TEST(EntryFactors, EveryEntryOfATownAbove1e6IsWithinTheTolerance) {
     const Scene scene = town_of_boxes();
     const double tolerance = 1e-3;
     const ViewFactors coarse = factors_of(scene, tolerance), fine = factors_of(scene, 0.02 * tolerance);
@@ -210,7 +210,7 @@ TEST(ViewFactors, EveryEntryOfATownAbove1e6IsWithinTheTolerance) {
     EXPECT_EQ(coarse.unsettled, 0U);
 }
 
-TEST(ViewFactors, EntriesOfAFurnishedRoomAreWithinTheTolerance) {
+TEST(EntryFactors, EntriesOfAFurnishedRoomAreWithinTheTolerance) {
     // A table on four legs, whose bottoms touch the floor, and a box below it.
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {4, 3, 2.5}, true, 1);
@@ -226,7 +226,7 @@ TEST(ViewFactors, EntriesOfAFurnishedRoomAreWithinTheTolerance) {
     EXPECT_EQ(fine.unsettled, 0U);
 }
 
-TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
+TEST(EntryFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     std::vector<Outline> whole, cut;
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);
     add_box(cut, {0, 0, 0}, {4, 3, 2.5}, true, 2);
@@ -244,7 +244,7 @@ TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
         }
 }
 
-TEST(ViewFactors, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
+TEST(EntryFactors, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
     const Scene scene = room_with_blocks();
     set_threads(1);
     const ViewFactors one = factors_of(scene, 1e-3);
@@ -254,13 +254,13 @@ TEST(ViewFactors, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
     EXPECT_EQ(one.factors, three.factors);
 }
 
-TEST(ViewFactors, AStopRequestEndsTheWork) {
+TEST(EntryFactors, AStopRequestEndsTheWork) {
     Progress progress;
     StopRequest stop;
     stop.interrupt();
-    const Result<ViewFactors> table = compute_view_factors(room_with_blocks(), 1e-3, progress, stop);
-    ASSERT_FALSE(table);
-    EXPECT_EQ(table.error().code, ErrorCode::limit);
+    const SparseFactors table = compute_entry_factors(room_with_blocks(), {.tolerance = 1e-3}, nullptr, progress, stop);
+    EXPECT_FALSE(table.is_settled);
+    EXPECT_EQ(std::count(table.finished.begin(), table.finished.end(), 1), 0);
 }
 
 Outline outline_of(const nlohmann::json& json) {
@@ -274,7 +274,7 @@ nlohmann::json published() {
     return nlohmann::json::parse(file);
 }
 
-TEST(ViewFactors, ReproduceThePublishedPairsWithBlockers) {
+TEST(EntryFactors, ReproduceThePublishedPairsWithBlockers) {
     const nlohmann::json table = published();
     for (const auto& c : table["cases"]) {
         if (c["kind"] != "polygon-polygon" || c["occluders"].empty()) continue;
@@ -289,7 +289,7 @@ TEST(ViewFactors, ReproduceThePublishedPairsWithBlockers) {
     }
 }
 
-TEST(ViewFactors, ReproduceThePublishedEnclosures) {
+TEST(EntryFactors, ReproduceThePublishedEnclosures) {
     const nlohmann::json published_table = published();
     for (const auto& e : published_table["enclosures"]) {
         std::vector<Outline> faces;
