@@ -1,0 +1,353 @@
+#include "exitance/transport/room_finder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+#include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/processes/distributed.hpp"
+
+namespace exitance {
+namespace {
+
+// The numbers below define what counts as a room of its own. They were chosen by trial and not measured by a command.
+
+/// A part of the scene is a room if it has at least this share of all area, or of the area that is not outdoors.
+constexpr double min_share = 0.05;
+/// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
+constexpr double min_detail = 0.001;
+/// An element is outdoors if at least this share of its rays reaches the sky. Under an open sky, half of the rays of a
+/// facade reach it, and most of those of a ground.
+constexpr double outdoors = 0.25;
+/// If the scene is at least this many times as large as its rooms, most of its area is ground and sky. Rooms are then
+/// not compared with that area.
+constexpr double far_larger = 20;
+constexpr double flattest = 0.1;       ///< Smallest over largest extent of a room. A flatter part is a gap.
+constexpr double thinnest = 0.03;      ///< Volume of a room over area^(3/2). A part with less volume is a gap.
+constexpr std::size_t min_walls = 4;   ///< Minimum number of walls of a room.
+constexpr std::size_t max_rooms = 64;  ///< Maximum number of rooms. Further parts stay joined to others.
+
+/// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random
+/// part.
+std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
+    constexpr Vec3 along{0.73, 0.54, 0.42};  // a direction that is not parallel to the walls of most buildings
+    constexpr double chance = 0.1;
+    Box box;
+    for (ElementId root : tree.roots()) box.add(tree.patch(root).centre());
+    std::vector<double> out;
+    for (std::size_t i = 0; i < numbering.leaves.size(); ++i) {
+        const Vec3 d = (tree.patch(numbering.leaves[i]).centre() - box.centre()) / std::max(box.diagonal(), 1e-300);
+        out.push_back(dot(d, along) + norm(d) + chance * static_cast<double>(hash(seed, i) >> 11) * 0x1p-53);
+    }
+    return out;
+}
+
+/// Elements that exchange light, and the space that they enclose.
+struct Part {
+    LeafNumbers leaves;
+    double area = 0;    ///< m^2
+    double volume = 0;  ///< Sum over elements of area times mean height of the elements it sees, m^3.
+    Box box;
+
+    void add(const Part& other) {
+        if (other.leaves.empty()) return;
+        leaves.insert(leaves.end(), other.leaves.begin(), other.leaves.end());
+        area += other.area;
+        volume += other.volume;
+        box.add(other.box.lo), box.add(other.box.hi);
+    }
+    /// False if the part is a gap, several gaps, or a single wall.
+    bool may_be_room() const {
+        const Vec3 size = box.size();
+        return leaves.size() >= min_walls && volume >= thinnest * std::pow(area, 1.5) &&
+               std::min({size.x, size.y, size.z}) >= flattest * std::max({size.x, size.y, size.z});
+    }
+};
+
+/// Splits a scene into parts.
+class RoomFinder {
+  public:
+    RoomFinder(const CoarseElements& in, std::uint64_t seed)
+        : flow_{in.rows, leaf_areas(in.tree, in.numbering), starting_light(in.tree, in.numbering, seed),
+                std::vector<std::uint16_t>(in.numbering.leaves.size()), !in.stage.scene.distant().domes.empty()},
+          stage_(in.stage),
+          tree_(in.tree),
+          numbering_(in.numbering) {
+        for (std::uint32_t i = 0; i < flow_.area.size(); ++i)
+            if (missed_share(flow_, i) < outdoors) indoor_area_ += flow_.area[i];
+    }
+
+    /// Returns the leaves of every room, in descending order of area. Each leaf belongs to one room.
+    std::vector<LeafNumbers> find(const StopRequest& stop) {
+        std::vector<Part> open = joined_by_light();
+        while (!open.empty() && parts_.size() + open.size() < max_rooms && !stop.requested()) {
+            Part part = std::move(open.back());
+            open.pop_back();
+            Part rest;
+            if (cut_at_opening(part, rest))
+                open.push_back(std::move(part)), open.push_back(std::move(rest));
+            else
+                parts_.push_back(std::move(part));
+        }
+        for (Part& part : open) parts_.push_back(std::move(part));
+        sort();
+        while (const Part* part = smallest_indoors()) {
+            if (part == &parts_.front() || counts(*part)) break;
+            join(static_cast<std::size_t>(part - parts_.data()));
+        }
+        if (parts_.size() > 1) place_blind_leaves();
+        std::vector<LeafNumbers> out;
+        for (Part& part : parts_) out.push_back(std::move(part.leaves));
+        return out;
+    }
+
+  private:
+    Part part_of(LeafNumbers leaves) {
+        Part part;
+        part.leaves = std::move(leaves);
+        within_.resize(flow_.area.size(), 0);
+        for (std::uint32_t i : part.leaves) within_[i] = 1;
+        std::vector<double> height(part.leaves.size());
+        const auto find_heights = [&](std::size_t first, std::size_t last) {
+            for (std::size_t k = first; k < last; ++k) height[k] = height_seen(part.leaves[k]);
+        };
+        constexpr std::size_t grain = 256;
+        height.size() > grain ? parallel_ranges(height.size(), grain, find_heights) : find_heights(0, height.size());
+        for (std::size_t k = 0; k < height.size(); ++k) {
+            const std::uint32_t i = part.leaves[k];
+            part.area += flow_.area[i];
+            part.volume += flow_.area[i] * height[k];
+            for (const Point& p : tree_.outline(numbering_.leaves[i])) part.box.add(p);
+        }
+        for (std::uint32_t i : part.leaves) within_[i] = 0;
+        return part;
+    }
+
+    /// Mean height, over an element's rays, of the elements within its part that it sees above its plane, metres.
+    /// Elements outside the part, seen through the mouth of a gap, are ignored: they say nothing about the gap.
+    double height_seen(std::uint32_t i) const {
+        const Patch& patch = tree_.patch(numbering_.leaves[i]);
+        const Normal n = patch.normal();
+        double sum = 0;
+        std::size_t met = 0;
+        for (std::uint32_t j : flow_.rows.hits(i))
+            if (j != RayRows::missed && within_[j])
+                sum += std::max(0.0, dot(n, tree_.patch(numbering_.leaves[j]).centre() - patch.centre())), ++met;
+        return met > 0 ? sum / static_cast<double>(met) : std::sqrt(flow_.area[i]);
+    }
+
+    void sort() {
+        std::stable_sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) { return a.area > b.area; });
+    }
+
+    /// Parts between which no light passes. Those that cannot be rooms are added to the largest part.
+    std::vector<Part> joined_by_light() {
+        const std::size_t n = flow_.area.size();
+        DisjointSets sets(n);
+        std::uint32_t under_sky = RayRows::missed;
+        for (std::uint32_t i = 0; i < n; ++i)
+            for (std::uint32_t j : flow_.rows.hits(i)) {
+                if (j != RayRows::missed) sets.unite(i, j);
+                if (j != RayRows::missed || !flow_.has_sky) continue;
+                if (under_sky != RayRows::missed) sets.unite(i, under_sky);
+                under_sky = i;
+            }
+        std::vector<LeafNumbers> by_root(n);
+        for (std::uint32_t i = 0; i < n; ++i) by_root[sets.root(i)].push_back(i);
+        Part outer;
+        std::vector<Part> out;
+        for (LeafNumbers& leaves : by_root) {
+            if (leaves.empty()) continue;
+            Part part = part_of(std::move(leaves));
+            part.may_be_room() ? out.push_back(std::move(part)) : outer.add(part);
+        }
+        std::stable_sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.area < b.area; });
+        if (out.empty()) {
+            // the scene is a ground, with or without objects on it
+            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;
+            return {std::move(outer)};
+        }
+        out.back().add(outer);
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            for (std::uint32_t i : out[k].leaves) flow_.part[i] = static_cast<std::uint16_t>(std::min(k, max_rooms));
+            if (k + 1 < out.size()) inner_.add(out[k].box.lo), inner_.add(out[k].box.hi);
+        }
+        fresh_ = static_cast<std::uint16_t>(std::min(out.size(), max_rooms) + 1);
+        total_ = outer.area;
+        for (const Part& part : out) total_ += part.area;
+        whole_ = out.back().box;
+        for (const Part& part : out) whole_.add(part.box.lo), whole_.add(part.box.hi);
+        return out;
+    }
+
+    /// True if at least four walls lie entirely within a part. A pocket between intersecting polygons has no such
+    /// walls, even if it is split into many elements.
+    bool has_own_walls(const Part& part) const {
+        const auto region_of = [&](std::uint32_t i) { return tree_.region(numbering_.leaves[i]).value; };
+        std::unordered_map<std::uint32_t, std::ptrdiff_t> outside;  // number of leaves of each wall outside the part
+        for (const std::uint32_t i : part.leaves) --outside[region_of(i)];
+        for (std::uint32_t i = 0; i < flow_.area.size(); ++i)
+            if (const auto at = outside.find(region_of(i)); at != outside.end()) ++at->second;
+        const auto own =
+            std::count_if(outside.begin(), outside.end(), [](const auto& wall) { return wall.second == 0; });
+        return own >= static_cast<std::ptrdiff_t>(min_walls);
+    }
+
+    /// True if the sky is above a part. Such a part is judged separately, independent of its shape and size.
+    bool is_outdoors(const Part& part) const {
+        double to_sky = 0;
+        for (const std::uint32_t i : part.leaves) to_sky += flow_.area[i] * missed_share(flow_, i);
+        return flow_.has_sky && to_sky >= outdoors * part.area;
+    }
+
+    /// True if a part is large enough to be a room of its own.
+    bool counts(const Part& part) const {
+        if (!part.may_be_room()) return false;
+        if (part.area >= min_share * total_) return true;
+        if (static_cast<double>(part.leaves.size()) < min_detail * static_cast<double>(flow_.area.size())) return false;
+        if (!has_own_walls(part)) return false;
+        if (flow_.has_sky && part.area >= min_share * indoor_area_) return true;
+        Box inner = inner_;
+        inner.add(part.box.lo), inner.add(part.box.hi);
+        return whole_.diagonal() >= far_larger * inner.diagonal();
+    }
+
+    /// Moves the elements behind an opening from `part` to `rest`; returns false if there is no opening.
+    bool cut_at_opening(Part& part, Part& rest) {
+        const std::uint16_t own = flow_.part[part.leaves[0]];
+        const std::optional<OpeningBetween> opening = find_opening(flow_, part.leaves, own);
+        if (!opening) return false;
+        Part small = part_of(opening->small), large = part_of(opening->large);
+        const bool room_is_large = is_outdoors(small) && !is_outdoors(large);
+        const Part& room = room_is_large ? large : small;
+        if (!counts(room)) return false;
+        inner_.add(room.box.lo), inner_.add(room.box.hi);
+        for (std::uint32_t i : small.leaves) flow_.part[i] = fresh_;
+        ++fresh_;
+        part = std::move(large), rest = std::move(small);
+        return true;
+    }
+
+    std::vector<std::uint8_t> blind_leaves() const;
+    void place_blind_leaves();
+    const Part* smallest_indoors() const;
+    void join(std::size_t number);
+
+    Flow flow_;
+    const Stage& stage_;
+    const ElementTree& tree_;
+    const LeafNumbering& numbering_;
+    std::vector<Part> parts_;
+    std::vector<std::uint8_t> within_;  ///< For every leaf, 1 while it belongs to the part that is being made.
+    Box inner_, whole_;                 ///< Bounds of all rooms but the largest, and of the whole scene.
+    double total_ = 0;                  ///< Area of the scene, m^2.
+    double indoor_area_ = 0;            ///< Area of the elements that see little of the sky, m^2.
+    std::uint16_t fresh_ = 1;           ///< Number of the next part.
+};
+
+/// For every leaf, 1 if all its rays hit backs. Rows do not distinguish backs from the sky; if there is a sky, a few
+/// more rays do.
+std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
+    constexpr std::size_t checking_rays = 8;
+    const ScrambledSobol points(checking_rays);
+    std::vector<std::uint8_t> out(numbering_.leaves.size());
+    parallel_for(out.size(), 256, [&](std::size_t i) {
+        const std::span<const std::uint32_t> seen = flow_.rows.hits(i);
+        if (!std::all_of(seen.begin(), seen.end(), [](std::uint32_t j) { return j == RayRows::missed; })) return;
+        out[i] = 1;
+        if (!flow_.has_sky) return;
+        const ElementId e = numbering_.leaves[i];
+        const RegionId region = tree_.region(e);
+        const Frame frame(stage_.scene.regions()[region].plane.n);
+        std::array<Vec3, checking_rays> directions;
+        std::array<RayHit, checking_rays> hits;
+        for (std::uint32_t k = 0; k < checking_rays; ++k)
+            directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+        stage_.tracer.nearest(directions, tree_.patch(e).at(tree_.centre(e)), region, hits);
+        out[i] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return hit.surface.is_none(); });
+    });
+    return out;
+}
+
+/// Assigns leaves without visible fronts to parts. No ray from below a lamp on a shelf hits a front, but light of the
+/// room enters at the edges. Such a leaf joins the part of the largest other leaf in the smallest inner element that
+/// contains both, or in their region. If there is none, no light reaches the leaf, and it joins the largest part.
+void RoomFinder::place_blind_leaves() {
+    struct Largest {
+        double area = 0;
+        std::uint16_t part = 0;
+
+        void add(const Largest& other) {
+            if (other.area > area) *this = other;
+        }
+    };
+    const std::vector<std::uint8_t> blind = blind_leaves();
+    const std::uint16_t largest_part = flow_.part[parts_.front().leaves.front()];
+    Field<ElementId, Largest> below(tree_.size());
+    std::unordered_map<std::uint32_t, Largest> of_region;
+    for (std::size_t i = 0; i < numbering_.leaves.size(); ++i)
+        if (!blind[i]) below[numbering_.leaves[i]] = {flow_.area[i], flow_.part[i]};
+    for (std::size_t k = tree_.size(); k-- > 0;) {  // children before parents
+        const ElementId e(k), parent = tree_.parent(e);
+        (parent.is_none() ? of_region[tree_.region(e).value] : below[parent]).add(below[e]);
+    }
+    for (std::size_t i = 0; i < numbering_.leaves.size(); ++i) {
+        if (!blind[i]) continue;
+        ElementId e = numbering_.leaves[i];
+        while (!e.is_none() && below[e].area == 0) e = tree_.parent(e);
+        const Largest& found = e.is_none() ? of_region[tree_.region(numbering_.leaves[i]).value] : below[e];
+        flow_.part[i] = found.area > 0 ? found.part : largest_part;
+    }
+    std::vector<LeafNumbers> leaves(fresh_);
+    for (std::uint32_t i = 0; i < flow_.part.size(); ++i) leaves[flow_.part[i]].push_back(i);
+    parts_.clear();
+    for (LeafNumbers& of_part : leaves)
+        if (!of_part.empty()) parts_.push_back(part_of(std::move(of_part)));
+    sort();
+}
+
+/// The smallest part that is not outdoors; null if there is none.
+const Part* RoomFinder::smallest_indoors() const {
+    const auto at = std::find_if(parts_.rbegin(), parts_.rend(), [&](const Part& part) { return !is_outdoors(part); });
+    return at == parts_.rend() ? nullptr : &*at;
+}
+
+/// Merges a part with the other part that it exchanges most light with.
+void RoomFinder::join(std::size_t number) {
+    const Part small = std::move(parts_[number]);
+    parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(number));
+    const std::uint16_t own = flow_.part[small.leaves[0]];
+    std::vector<double> to(fresh_);
+    for (std::uint32_t i : small.leaves)
+        for (std::uint32_t j : flow_.rows.hits(i))
+            if (j != RayRows::missed && flow_.part[j] != own)
+                to[flow_.part[j]] += flow_.area[i] / static_cast<double>(flow_.rows.hits(i).size());
+    const auto most = std::max_element(parts_.begin(), parts_.end(), [&](const Part& a, const Part& b) {
+        return to[flow_.part[a.leaves[0]]] < to[flow_.part[b.leaves[0]]];
+    });
+    for (std::uint32_t i : small.leaves) flow_.part[i] = flow_.part[most->leaves[0]];
+    most->add(small);
+    sort();
+}
+
+}  // namespace
+
+std::vector<LeafNumbers> find_room_leaves(const CoarseElements& in, std::uint64_t seed, const StopRequest& stop) {
+    const auto find = [&] { return RoomFinder(in, seed).find(stop); };
+    if (processes() == 1) return find();
+    // Each step depends on the one before, so the first process does all and sends the result.
+    std::vector<LeafNumbers> rooms;
+    ArchiveWriter writer;
+    if (is_first_process()) rooms = find(), writer(rooms);
+    const std::string bytes = as_first(writer.take(), "rooms");
+    ArchiveReader reader(bytes);
+    reader(rooms);
+    EXI_CHECK(reader.good() && reader.left() == 0);
+    return rooms;
+}
+
+}  // namespace exitance

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "exitance/base/progress.hpp"
+#include "exitance/transport/light_openings.hpp"
+
+namespace exitance {
+
+/// Coarse elements of a scene, and the rays that they exchange light by.
+struct CoarseElements {
+    const Stage& stage;
+    const ElementTree& tree;
+    const LeafNumbering& numbering;
+    const RayRows& rows;
+};
+
+/// Divides the leaves of coarse elements into the rooms of a scene (`LightRooms`): cuts the scene at openings
+/// (`find_opening`) until no part can be cut into rooms, merges parts that are too small with a neighbour, and assigns
+/// leaves that see no front. Returns the leaves of every room, in descending order of area. Each leaf belongs to one
+/// room. Collective.
+std::vector<LeafNumbers> find_room_leaves(const CoarseElements& in, std::uint64_t seed, const StopRequest& stop);
+
+}  // namespace exitance
