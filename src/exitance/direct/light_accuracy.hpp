@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include "exitance/calibration/error_budget.hpp"
 
 namespace exitance {
 
@@ -13,11 +13,9 @@ struct LightAccuracy {
     double allowed(double E) const { return relative * E + absolute; }
 };
 
-/// Accuracy for single places of a solution with the relative error `error`. Independent noise of a fifth of the error
-/// makes it larger by 2%.
-constexpr LightAccuracy point_accuracy(double error) {
-    constexpr double part = 0.2, least = 2e-4, most = 0.01;
-    return {.relative = std::clamp(part * error, least, most)};
+/// Accuracy for single places of a solution with the relative error `error`.
+inline LightAccuracy point_accuracy(double error) {
+    return {.relative = ErrorBudget(error).direct_at_point()};
 }
 
 }  // namespace exitance

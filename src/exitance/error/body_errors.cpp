@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/processes/distributed.hpp"
 
 namespace exitance {

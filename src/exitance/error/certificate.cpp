@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/batch_mean.hpp"
 #include "exitance/error/body_errors.hpp"
 #include "exitance/error/coarse_response.hpp"
@@ -17,14 +18,6 @@
 
 namespace exitance {
 namespace {
-
-/// Returns the accuracy required of exact light at checked hits: half of the requested error. Where the projection is
-/// as wrong as the solution, this adds a quarter to the squared differences found; where the projection is worse, and
-/// checks matter most, it adds less.
-LightAccuracy check_accuracy(double error) {
-    constexpr double least = 2e-4, most = 0.1;  // limits, derived from the range of errors that can be requested
-    return {.relative = std::clamp(0.5 * error, least, most)};
-}
 
 /// Weighted sums over the samples of the scene, or of one room.
 struct SampleSums {
@@ -85,7 +78,7 @@ struct Certifier::Content {
           coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
           response(stage, light, coarse, options),
           paths(stage),
-          check(stage, paths, options.projected, check_accuracy(options.error)) {
+          check(stage, paths, options.projected, {.relative = ErrorBudget(options.error).checked_hit()}) {
         if (mean_reflected > 0 && options.places.empty()) narrow = find_narrow_leaves(stage, indirect.tree);
     }
 

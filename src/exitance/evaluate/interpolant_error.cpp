@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "exitance/base/random.hpp"
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/processes/distributed.hpp"
 
@@ -87,8 +88,7 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
     std::vector<double> square(count_of_places(leaves.size()));
     // Light of dark places need not be more accurate than the error that is measured.
     LightAccuracy accuracy = point_accuracy(1);
-    constexpr double resolved = 0.2;  // share of the error, derived from point_accuracy()
-    accuracy.absolute = resolved * expected_error(tree, leaves);
+    accuracy.absolute = ErrorBudget::independent_share * expected_error(tree, leaves);
     shared_ranges(
         square.size(), 8,
         [&](std::size_t begin, std::size_t end) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/scene/findings.hpp"
 
@@ -18,10 +19,9 @@ void add_findings(std::vector<std::string>& warnings, std::span<const Finding> f
 }
 
 void warn_of_useless_light(SolveStatistics& statistics) {
-    constexpr double rough = 0.32;  // relative error; derived from pictures, in which the scene is just recognizable
     const double error = statistics.relative_error_estimate.value_or(0);
     const bool is_useless = error >= 1;
-    if (error < rough || (!is_useless && statistics.stopped_by == StopReason::divergence)) return;
+    if (error < recognizable_error || (!is_useless && statistics.stopped_by == StopReason::divergence)) return;
     if (is_useless) statistics.converged = false;
     statistics.warnings.push_back(
         fmt::format("the estimated error is {:.0f}% of the light: the result is {}; refine the settings, or request an "

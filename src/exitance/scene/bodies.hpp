@@ -7,10 +7,9 @@
 
 namespace exitance {
 
-/// Requirement on the error of each body. It may be at most `max_body_errors` times the error requested for the whole.
-/// It is relative to the light that the body reflects, or to `min_body_light` times that of its room if that is more.
-/// Both numbers are a choice: they decide which errors of small or dark bodies count as wrong.
-constexpr double max_body_errors = 3, min_body_light = 0.1;
+/// The error of a body (at most `ErrorBudget::body()`) is relative to the light that the body reflects, or to this
+/// share of the light of its room if that is more. A choice: it decides which errors of dark bodies count as wrong.
+constexpr double min_body_light = 0.1;
 
 /// A part of a scene for which an error is reported: faces that are joined by edges or belong to one named object. The
 /// two sides of a sheet or of a plate are two bodies, since their light has nothing in common.

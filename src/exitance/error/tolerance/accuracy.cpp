@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/calibration/numbers.hpp"
-#include "exitance/scene/bodies.hpp"
+#include "exitance/calibration/error_budget.hpp"
 
 namespace exitance {
 namespace {
@@ -17,9 +16,6 @@ void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
 }
 
 }  // namespace
-
-/// Share of a body's error that noise, interpolation, and the elements that it sees may each have.
-constexpr double body_error_share = 0.5;  // derived from adding squares: noise, interpolation, and the elements twice
 
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
     namespace c = calibrated;
@@ -41,10 +37,11 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // The projected direct light is only used for gathering, and its means are exact, so that a large misfit is
     // acceptable; unless it is itself delivered.
     const bool is_delivered = options.visibility == VisibilityKind::fractional;
-    knobs.direct_tolerance = (is_delivered ? c::direct_tolerance_fractional : c::direct_tolerance) * error;
-    knobs.body_error = body_error_share * max_body_errors * error;
-    knobs.residual = c::residual_share * error;
-    knobs.link_error = c::link_error_share * error;
+    const ErrorBudget budget(error);
+    knobs.direct_tolerance = budget.direct_projection(is_delivered);
+    knobs.body_error = budget.body_part();
+    knobs.residual = budget.residual();
+    knobs.link_error = budget.links();
     // Curved elements may be larger. They are sampled at more points, so that fewer rays per point are sufficient. The
     // number of rays of an element hardly depends on its size: start with few elements, which are split where the light
     // varies.
@@ -55,10 +52,8 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     const double rays = (curved ? c::curved_gather_rays : c::straight_gather_rays) * std::pow(0.5 / error, 4.0 / 3);
     const double least = std::max(curved ? c::min_curved_rays : c::min_rays_per_sample, rays / 4);
     knobs.gather_rays = {.average = rays, .min = static_cast<unsigned>(least), .max = 16384};
-    // Features missed by all points of an element matter more when the noise is lower.
-    knobs.gather_noise =
-        c::gather_noise * error * std::pow(std::min(1.0, error / c::finer_gather_below), c::quieter_exponent);
-    knobs.gather_tolerance = (curved ? c::curved_tolerance : c::straight_tolerance) * error;
+    knobs.gather_noise = budget.gather_noise();
+    knobs.gather_tolerance = budget.gather_misfit(curved);
     apply_user_knobs(knobs, options);
     return knobs;
 }
@@ -102,7 +97,7 @@ Knobs knobs_for_refined_sums(const Knobs& knobs, double error, const std::vector
     out.solve_mesh = {std::sqrt(2.0) * coarse.solve_mesh.edge, fewer(coarse.gather_mesh.grading_levels, 2)};
     out.solve_rays = coarse.solve_rays, out.solve_rays.average = c::refined_row_rays;
     out.gather_mesh = {std::sqrt(2.0) * edge_for_sums(pieces, coarser), fewer(knobs.gather_mesh.grading_levels, 1)};
-    out.gather_tolerance = c::straight_tolerance * coarser;
+    out.gather_tolerance = ErrorBudget(coarser).gather_misfit(false);
     out.gather_element_share = c::refined_element_share * coarser;
     return out;
 }
@@ -169,18 +164,18 @@ void tighten_local(Tightened& out, const ErrorParts& parts, double allowed) {
     out.work = std::max(out.work, std::pow(std::min(noise, interpolation), -4.0 / 3));
 }
 
-/// Returns the error allowed for the local pass, given that of the method: at least half of the target.
+/// Returns the error allowed for the local pass, given that of the method.
 double allowed_locally(double target, double method) {
-    return std::sqrt(std::max(0.5 * 0.5 * target * target, target * target - method * method));
+    constexpr double min_share = ErrorBudget::min_local_share;
+    return std::sqrt(std::max(min_share * min_share * target * target, target * target - method * method));
 }
 
 }  // namespace
 
 Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
     namespace c = calibrated;
-    // The method may use half of the target, or all of it if nothing is gathered. The gather smooths its light, and
-    // much finer meshes soon become expensive.
-    const double methods_share = parts.noise > 0 || parts.interpolation > 0 ? 0.5 : 1;
+    const bool is_gathered = parts.noise > 0 || parts.interpolation > 0;
+    const double methods_share = is_gathered ? ErrorBudget::method_share : 1;
     Tightened out{knobs};
     double method = parts.method;
     const double local = std::hypot(parts.noise, parts.interpolation);
@@ -207,9 +202,9 @@ Tightened tightened_for_step(const Knobs& knobs, const ErrorParts& parts, double
                              const SolveOptions& options) {
     Tightened out{.knobs = knobs, .method = true, .left = left};
     const double method = left * parts.method, local = std::hypot(parts.noise, parts.interpolation);
-    // Further steps follow until the method's part is at most half of the target.
+    // Further steps follow until the method's part is at most its share of the target.
     if (std::hypot(method, local) > limit)
-        tighten_local(out, parts, allowed_locally(target, std::min(method, 0.5 * target)));
+        tighten_local(out, parts, allowed_locally(target, std::min(method, ErrorBudget::method_share * target)));
     apply_user_knobs(out.knobs, options);
     return out;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/links/ray_links.hpp"
 #include "exitance/methods/constant_elements.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -39,8 +40,7 @@ void reflect_again(const RayRows& rows, const Scene& scene, GlobalLight& light) 
 /// Permitted error of one of `count` links, W/m^2 m. Errors from evaluating a whole element are equal for neighbours,
 /// and every reflection multiplies them.
 double allowed_error(const MethodInput& input, const GlobalLight& light, std::size_t count) {
-    constexpr double share = 0.5;
-    return share * input.knobs.link_error * light.mean_reflected(input.stage.area) /
+    return ErrorBudget::share_of_links_by_rays * input.knobs.link_error * light.mean_reflected(input.stage.area) /
            input.stage.expected_reflections() * std::sqrt(input.stage.area / static_cast<double>(count));
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/calibration/numbers.hpp"
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/area_samples.hpp"
 #include "exitance/error/tolerance/accuracy.hpp"
 #include "exitance/gather/element_gather.hpp"
@@ -105,10 +105,9 @@ double pilot_spread(const Stage& stage, const SolveOptions& options) {
 /// The error is predicted as that of independent matrix rows of 64 rays, averaged over the elements.
 double further_attempts(double spread, double error, const Counts& counts, double gather) {
     namespace c = calibrated;
-    constexpr double methods_share = 0.5;
     const double method = spread / std::sqrt(counts.elements);
-    if (method <= methods_share * error) return 0;
-    const double wanted = methods_share * c::attempt_aim * error;
+    if (method <= ErrorBudget::method_share * error) return 0;
+    const double wanted = ErrorBudget::method_share * ErrorBudget(error).next_attempt();
     const double finer = std::clamp(c::part_aim * wanted / method, c::min_attempt_factor, c::max_method_factor);
     return forecast_attempt({.row_rays = counts.row_rays,
                              .gather_rays = gather,
