@@ -11,7 +11,8 @@ namespace exitance {
 /// Returns all view factors of a scene as a full matrix. `tolerance`: relative error of every entry above 1e-6.
 inline ViewFactors dense_view_factors(const Scene& scene, double tolerance) {
     Progress progress;
-    const SparseFactors sparse = compute_entry_factors(scene, {.tolerance = tolerance}, nullptr, progress, {});
+    const SparseFactors sparse =
+        compute_entry_factors(scene, {.tolerance = tolerance}, nullptr, progress, StopRequest());
     EXI_CHECK(sparse.is_settled);
     ViewFactors out{.areas = sparse.areas,
                     .emittances = sparse.emittances,

@@ -6,7 +6,8 @@
 #include "exitance/methods/diffusing_panes.hpp"
 #include "exitance/methods/extensions.hpp"
 #include "exitance/methods/options/support.hpp"
-#include "exitance/methods/solver/solver.hpp"
+#include "exitance/methods/solver/published_solver.hpp"
+#include "exitance/methods/solver/standard_solver.hpp"
 #include "exitance/scene/named_regions.hpp"
 
 namespace exitance {
@@ -42,7 +43,10 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
             return named.error();
     if (const Result<void> carried = check_carried_light(scene, *settled); !carried) return carried.error();
     const Stopwatch watch;
-    Result<Solution> solution = Solver(std::move(scene), *settled, progress, stop, checkpoints, show).run();
+    Result<Solution> solution =
+        form_of(*settled) == Form::standard
+            ? StandardSolver(std::move(scene), *settled, progress, stop, checkpoints, show).run()
+            : PublishedSolver(std::move(scene), *settled, progress, stop, checkpoints, show).run();
     if (!solution) return solution;
     solution->statistics.seconds[RunPart::total] = watch.seconds();
     solution->statistics.peak_memory_bytes = peak_memory_bytes();

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/calibration/numbers.hpp"
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/direct_light_noise.hpp"
 #include "exitance/error/further_measurements.hpp"
 #include "exitance/evaluate/energy.hpp"
@@ -21,17 +21,12 @@ double Solver::margin(std::size_t points) {
     return 1 - calibrated::estimate_margin * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
 }
 
-std::uint64_t Solver::certificate_seed() const {
-    const auto attempts_before = static_cast<std::uint64_t>(attempt_ - 1 + shown_);
-    return attempts_before == 0 ? options_.seed : hash(options_.seed, attempts_before);
-}
-
-void Solver::certify_solution(CertificateOptions options, std::optional<double> demand,
-                              std::span<const ElementGather> gathered) {
+void Solver::certify(CertificateOptions options, std::optional<double> demand,
+                     std::span<const ElementGather> gathered) {
     options.direct_in_elements = light_->holds_direct();
     options.keeps_flux = gathers() && !light_->holds_direct() && keeps_flux() &&
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
-    options.light_in = light_in_, options.allowed_in = allowed_in_;
+    options.light_in = rooms_.light_in(), options.allowed_in = rooms_.allowed_in();
     options.bounces = options_.bounces;
     options.bodies = &bodies();
     options.stop = &stop_;
@@ -52,7 +47,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     // bodies can be measured.
     constexpr std::size_t min_check_rays = 1 << 17, min_rays_of_body = 1 << 13;
     options.check_rays = std::max({statistics().rays / 10, min_check_rays, min_rays_of_body * bodies().all.size()});
-    SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
+    SummedLight summed{.delivered = {}, .gathered = gathered, .share = ErrorBudget(options.error).certified_sum()};
     if (sums_) {
         for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
             summed.delivered.emplace_back(stage_, part);
@@ -96,8 +91,7 @@ void Solver::record_darkness() {
 }
 
 bool Solver::may_be_last(double demand) const {
-    // only an intermediate solution was requested
-    if (options_.error && *options_.error > requested_error_) return false;
+    if (is_intermediate()) return false;
     return has_reached(demand) || attempt_ == attempt_limit() || options_.memory_limit_bytes ||
            common_seconds_left(stop_) < HUGE_VAL;
 }
@@ -105,13 +99,6 @@ bool Solver::may_be_last(double demand) const {
 double Solver::direct_light_noise_share() const {
     if (certificate_.points == 0 || light_->holds_direct()) return 0;
     return direct_light_noise(stage_, direct_, point_accuracy(certificate_.estimate)) / certificate_.mean_reflected;
-}
-
-void Solver::record_noise_of_direct_light_alone() {
-    const double error = direct_light_noise(stage_, direct_, point_accuracy(1));
-    if (error > 0)
-        statistics().relative_error_estimate = statistics().relative_error_bound =
-            error / mean_direct_light(stage_, direct_).of_errors();
 }
 
 void Solver::warn_of_hidden_errors() {
@@ -136,7 +123,7 @@ void Solver::warn_of_bodies() {
     const BodyError* worst = nullptr;
     std::size_t wrong = 0;
     for (const BodyError& body : statistics().bodies) {
-        if (!body.error || *body.error <= max_body_errors * *demand) continue;
+        if (!body.error || *body.error <= ErrorBudget(*demand).body()) continue;
         ++wrong;
         if (!worst || *body.error > *worst->error) worst = &body;
     }
@@ -155,28 +142,6 @@ void Solver::warn_of_bodies() {
                     scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x,
                     at.y, at.z, 100 * *worst->error, 100 * *demand,
                     wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : "", advice));
-}
-
-/// Returns the parts of the error where it is largest. If their sum exceeds the whole error, they cancel in part, as
-/// after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the rays' noise
-/// counts as noise, since a smaller tolerance would not split any elements. Error at rough places counts as neither:
-/// the local pass refines these in any case.
-ErrorParts Solver::error_parts() const {
-    if (!gathers()) return {.method = certificate_.largest()};
-    const std::optional<std::size_t> room = certificate_.largest_room;
-    const LocalPassReport::Parts told =
-        room && *room < gathered_.rooms.size() ? gathered_.rooms[*room] : gathered_.whole;
-    const double parts = std::hypot(certificate_.local, certificate_.method), all = certificate_.largest();
-    const double cancels = parts > all ? all / parts : 1;
-    const double spread = std::sqrt(std::max(0.0, std::pow(certificate_.local, 2) - std::pow(certificate_.rough, 2)));
-    const double local = cancels * spread, noise = told.noise / certificate_.largest_light;
-    const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
-    const double seen = told.interpolation / certificate_.largest_light;
-    // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
-    constexpr double min_hidden_ratio = 3;
-    return {.method = cancels * certificate_.method,
-            .noise = misfit > min_hidden_ratio * seen ? std::max(noise, misfit) : noise,
-            .interpolation = std::max(misfit, seen)};
 }
 
 }  // namespace exitance

@@ -1,23 +1,21 @@
-#include "exitance/methods/solver/solver.hpp"
+#include "exitance/methods/solver/standard_solver.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "exitance/calibration/numbers.hpp"
+#include "exitance/calibration/error_budget.hpp"
 #include "exitance/evaluate/energy.hpp"
-#include "exitance/evaluate/interpolant.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
-#include "exitance/methods/methods.hpp"
 #include "exitance/methods/solve_report.hpp"
 
 namespace exitance {
 
-bool Solver::makes_discontinuity_mesh() const {
+bool StandardSolver::makes_discontinuity_mesh() const {
     return options_.method == Method::discontinuity && !solution_.direct_in_elements;
 }
 
-bool Solver::make_discontinuity() {
+bool StandardSolver::make_discontinuity() {
     progress_.phase("discontinuities");
     reach(Step::output);
     // With a time limit, coarse elements are computed first, so that there is a result when time runs out.
@@ -40,7 +38,7 @@ bool Solver::make_discontinuity() {
     return follows_shadows;
 }
 
-void Solver::warn_of_lines() {
+void StandardSolver::warn_of_lines() {
     const DiscontinuityCounts& c = *statistics().discontinuity;
     const std::size_t followed = c.d0 + c.d1 + c.d2 + c.eee;
     if (options_.discontinuity.lines || c.left_out <= followed) return;
@@ -50,31 +48,28 @@ void Solver::warn_of_lines() {
                     followed, c.left_out));
 }
 
-double Solver::interpolant_scale() const {
+double StandardSolver::interpolant_scale() const {
     return certificate_.mean_reflected > 0 ? certificate_.mean_reflected
                                            : mean_direct_light(stage_, direct_).of_errors();
 }
 
-ElementFunction Solver::plain_elements(InterpolantReport& report) const {
-    const double error = options_.error_interpolant.value_or(calibrated::interpolant_error * options_.error_target());
+ElementFunction StandardSolver::plain_elements(InterpolantReport& report) const {
+    const double error = options_.error_interpolant.value_or(ErrorBudget(options_.error_target()).exported_mesh());
     // Fits weigh errors by `light_weight`, which is not 1 on black surfaces.
     const bool is_black = !(certificate_.mean_reflected > 0) && !(mean_direct_light(stage_, direct_).reflected > 0);
     const double counted = interpolant_scale() * (is_black ? mean(light_weight(Material{})) : 1);
     return make_interpolant(stage_, direct_, solution_.indirect, solution_.direct_share,
-                            {.tolerance = error * counted, .light_in = light_in_, .seed = options_.seed}, report,
-                            stop_);
+                            {.tolerance = error * counted, .light_in = rooms_.light_in(), .seed = options_.seed},
+                            report, stop_);
 }
 
-void Solver::make_output_mesh() {
+void StandardSolver::make_exported_mesh() {
     const bool follows_shadows = makes_discontinuity_mesh() && make_discontinuity();
     progress_.phase("reconstruct");
     if (follows_shadows) {
         // The discontinuity mesh is exported.
-    } else if (is_published() || solution_.direct_in_elements) {
-        if (is_published())
-            direct_ = make_published_mesh(solution_);
-        else
-            solution_.interpolant = solution_.indirect;
+    } else if (solution_.direct_in_elements) {
+        solution_.interpolant = solution_.indirect;
         statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
     } else {
         InterpolantReport report;
@@ -86,14 +81,12 @@ void Solver::make_output_mesh() {
         progress_.note(fmt::format("{} elements to export; their own error is {:.3f}%",
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
-    // for the statistics of escaping light
-    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);
+}
+
+void StandardSolver::record_energy() {
+    Solver::record_energy();
     EnergyBalance& energy = statistics().energy;
-    energy = energy_balance(solution_, direct_, stage_);
-    if (!is_published()) energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);
-    if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
-        warn(shines_on_backs(stage_) ? "no light reaches the front of any face: they may be turned inside out"
-                                     : "no light reaches any face: all of it leaves the scene");
+    energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);
 }
 
 }  // namespace exitance

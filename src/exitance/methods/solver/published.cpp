@@ -1,3 +1,5 @@
+#include "exitance/methods/solver/published_solver.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +12,6 @@
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solve_report.hpp"
-#include "exitance/methods/solver/solver.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
@@ -57,15 +58,20 @@ void record_counts(const PublishedLight& light, SolveStatistics& s) {
 
 }  // namespace
 
-void Solver::solve_published() {
-    const std::optional<double> demand = published_demand();
+void PublishedSolver::find_light() {
+    const std::optional<double> demand = this->demand();
     if (attempt_ == 1) aim_ = demand.value_or(options_.error_target());
     snapshots_.emplace(options_.snapshots, [this](const Snapshots::Moment& moment) { show_snapshot(moment); });
+    make_attempts(demand);
+    warn_of_bodies();
+}
+
+void PublishedSolver::make_attempts(std::optional<double> demand) {
     for (;; ++attempt_, reach(Step::project)) {
         const Stopwatch watch;
-        attempt_published();
+        attempt();
         if (refusal_ || !has_estimate(options_) || statistics().is_stopped()) return;
-        certify_published();
+        certify_carried_light();
         if (stop_.requested()) return stop_as_requested();
         statistics().converged = !demand || certificate_.largest() <= *demand;
         if (statistics().converged) return;
@@ -74,27 +80,27 @@ void Solver::solve_published() {
     }
 }
 
-void Solver::attempt_published() {
+void PublishedSolver::attempt() {
     if (step_ == Step::project) {
-        find_light();
+        run_method(aim_, &*snapshots_);
         progress_.close();
         double& solving = statistics().seconds[RunPart::solve];
         solving = std::max(0.0, solving - snapshots_->writing());
         if ((refusal_ = light_->published->refusal)) return;
         record_end();
         if (gives_up()) return stop_as_requested();
-        take_published(*light_, solution_);
+        take_light(*light_, solution_);
         reach(Step::gather);
     }
     if (step_ == Step::gather) {
         const bool gathers = form_of(options_) == Form::published && options_.classical.gather.value_or(true);
-        if (gathers && stage_.has_indirect_light() && !stop_.requested()) solution_.indirect = gather_published();
+        if (gathers && stage_.has_indirect_light() && !stop_.requested()) solution_.indirect = gather_once();
         record_method_time(snapshots_->seconds(), snapshots_->processor_seconds(), statistics());
         reach(Step::certify);
     }
 }
 
-bool Solver::aim_lower(double demand, double last_seconds) {
+bool PublishedSolver::aim_lower(double demand, double last_seconds) {
     // About four times as many links and nodes are needed to halve the error.
     constexpr double cost_of_finer = 4, min_factor = 0.5;
     if (attempt_ == attempt_limit()) return stop_early(StopReason::iterations), false;
@@ -105,13 +111,13 @@ bool Solver::aim_lower(double demand, double last_seconds) {
     return true;
 }
 
-std::optional<double> Solver::published_demand() const {
+std::optional<double> PublishedSolver::demand() const {
     const std::optional<double> demand = options_.error_demand();
     if (!options_.error_interpolant) return demand;
     return std::min(*options_.error_interpolant, demand.value_or(HUGE_VAL));
 }
 
-void Solver::record_end() {
+void PublishedSolver::record_end() {
     const SolveReport& report = light_->report;
     if (light_->limited_by_memory) stop_early(StopReason::memory_limit);
     if (report.interrupted)
@@ -122,7 +128,7 @@ void Solver::record_end() {
         stop_early(StopReason::iterations);
 }
 
-void Solver::take_published(const GlobalLight& light, Solution& solution) const {
+void PublishedSolver::take_light(const GlobalLight& light, Solution& solution) const {
     const PublishedLight& found = *light.published;
     solution.indirect = found.irradiance.tree.size() > 0 ? found.irradiance : on_leaves(light);
     solution.direct_in_elements = light.holds_direct();
@@ -131,12 +137,12 @@ void Solver::take_published(const GlobalLight& light, Solution& solution) const 
     record_counts(found, solution.statistics);
 }
 
-void Solver::record_method_time(double seconds, double processor_seconds, SolveStatistics& s) const {
+void PublishedSolver::record_method_time(double seconds, double processor_seconds, SolveStatistics& s) const {
     s.figures["method_seconds"] = seconds;
     s.figures["processor_seconds"] = processor_seconds;
 }
 
-ElementFunction Solver::gather_published() {
+ElementFunction PublishedSolver::gather_once() {
     progress_.phase("gather");
     const ElementFunction& E = solution_.indirect;
     const bool is_carried = solution_.direct_in_elements;
@@ -150,28 +156,28 @@ ElementFunction Solver::gather_published() {
     return out;
 }
 
-void Solver::certify_published() {
+void PublishedSolver::certify_carried_light() {
     progress_.phase("certify");
     direct_ = no_direct_light(light_->tree);
-    allowed_in_ = light_in_;
-    certify_solution({.error = options_.error_target(), .seed = options_.seed});
+    rooms_.allow_by_light();
+    certify({.error = options_.error_target(), .seed = options_.seed});
     record_counts(*light_->published, statistics());
 }
 
-void Solver::show_snapshot(const Snapshots::Moment& moment) {
+void PublishedSolver::show_snapshot(const Snapshots::Moment& moment) {
     if (!show_) return;
     Solution shown{.scene = solution_.scene, .statistics = statistics()};
     // in later steps the work has been recorded already
     if (step_ == Step::project) record_work(moment.light, shown.statistics);
-    take_published(moment.light, shown);
-    make_published_mesh(shown);
+    take_light(moment.light, shown);
+    make_mesh(shown);
     shown.statistics.converged = false;
     shown.statistics.seconds[RunPart::total] = moment.seconds;
     record_method_time(moment.seconds, moment.processor_seconds, shown.statistics);
     show_(std::move(shown));
 }
 
-DirectProjection Solver::make_published_mesh(Solution& solution) const {
+DirectProjection PublishedSolver::make_mesh(Solution& solution) const {
     constexpr double nearness = 1e-6;  // derived from rounding: corners at this share of the scene's size are equal
     ElementFunction& E = solution.indirect;
     if (options_.smoothing.value_or(false) && form_of(options_) == Form::published)
@@ -180,6 +186,12 @@ DirectProjection Solver::make_published_mesh(Solution& solution) const {
     if (!solution.direct_in_elements) direct = direct_light_on(stage_, E.tree);
     solution.interpolant = solution.direct_in_elements ? E : with_direct(E, direct);
     return direct;
+}
+
+void PublishedSolver::make_exported_mesh() {
+    progress_.phase("reconstruct");
+    direct_ = make_mesh(solution_);
+    statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
 }
 
 }  // namespace exitance

@@ -6,11 +6,17 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
-#include "exitance/calibration/numbers.hpp"
+#include "exitance/calibration/error_budget.hpp"
+#include "exitance/evaluate/energy.hpp"
+#include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/methods.hpp"
-#include "exitance/methods/plan/memory_plan.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solve_archive.hpp"
+#include "exitance/methods/solve_report.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/solution/continuous.hpp"
+#include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
@@ -31,12 +37,7 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     // Before a near deadline, a coarse solution is computed first, so that there is a result when time runs out. With
     // checkpoints, another run may continue; its result must not depend on the time limit of this run.
     const bool hurries = common_seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
-    // Error of the first solution that a viewer shows. Given by judgement, not measured: a scene is recognizable in it.
-    constexpr double first_shown_error = 0.32;
-    plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
-    requested_error_ = options_.error_target();
-    if (show && options_.error_demand() && !is_published())
-        options_.error = std::max(first_shown_error, requested_error_);
+    plan_ = make_plan(stage_, asked, show ? recognizable_error : hurries ? calibrated::hurried_error : 0);
     for (const std::string& notice : plan_.notices) warn(notice);
     if (!plan_.why.empty())
         progress.note(fmt::format("method {}: {}", name_in(method_names, options_.method), plan_.why));
@@ -46,49 +47,25 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
 }
 
 Result<Solution> Solver::run() {
-    const bool reflects = options_.bounces != 0 && stage_.has_indirect_light();
     if (const Result<void> fits = fit_memory(); !fits) return fits.error();
     resume();
-    if (step_ == Step::output) {
-        // The light has been found by the run that this one continues.
-    } else if (is_published()) {
-        solve_published();
-        warn_of_bodies();
-    } else if (reflects) {
-        solve_indirect_light();
-        warn_of_bodies();
-    } else {
-        solve_direct_light();
-    }
+    if (step_ != Step::output) find_light();  // else the run that this one continues has found it
     if (refusal_ && !has_light()) return *refusal_;
     if (refusal_) stop_early(StopReason::memory_limit);
     if (light_ && has_diverged(light_->report)) warn(divergence_warning);
     if (light_ && !light_->kept_links.empty())
         solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
-    // Frees the data that only attempts need before the output mesh is created.
+    // Frees the data that only attempts need before the exported mesh is created.
     light_.reset();
     local_pass_.reset();
     gathered_ = {};
     release_freed_memory();
-    make_output_mesh();
+    make_exported_mesh();
+    // for the statistics of escaping light
+    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);
+    record_energy();
     progress_.close();
     return std::move(solution_);
-}
-
-Result<void> Solver::fit_memory() {
-    if (!options_.memory_limit_bytes || is_published()) return {};  // published forms stop refining at the limit
-    const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
-    if (!fits) return fits.error();
-    if (!*fits) stop_early(StopReason::memory_limit);
-    return {};
-}
-
-void Solver::solve_direct_light() {
-    if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
-    statistics().elements = direct_.tree.size();
-    statistics().leaf_elements = direct_.tree.leaves().size();
-    record_zero_error();
-    record_noise_of_direct_light_alone();
 }
 
 void Solver::record_plan() {
@@ -106,12 +83,11 @@ void Solver::record_plan() {
 
 template <class Archive>
 void Solver::archive_state(Archive& a, std::string& phase) {
-    a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, corrected_, gathered_, certificate_, phase,
-      steps_, aim_);
-    next_.archive_state(a);
-    a(body_attempts_, worst_body_before_, body_shares_, light_in_, allowed_in_, noise_in_, solution_.indirect,
-      solution_.links, solution_.own_form, solution_.delivers_own_form, solution_.direct_share,
-      solution_.direct_in_elements, solution_.discontinuity, solution_.statistics);
+    a(attempt_, step_, knobs_, direct_, light_, gathered_, certificate_, phase, solution_.indirect, solution_.links,
+      solution_.own_form, solution_.delivers_own_form, solution_.direct_share, solution_.direct_in_elements,
+      solution_.discontinuity, solution_.statistics);
+    rooms_.archive_state(a);
+    archive_own(a);
     bool has_local_pass = local_pass_.has_value();
     a(has_local_pass);
     if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
@@ -167,6 +143,53 @@ void Solver::record_zero_error() {
 void Solver::stop_early(StopReason why) {
     statistics().stopped_by = why;
     statistics().converged = false;
+}
+
+void Solver::run_method(double aim, Snapshots* snapshots) {
+    light_ =
+        entry_of(options_.method, form_of(options_))
+            .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light(), aim, snapshots});
+    record_work(*light_, statistics());
+    rooms_.set_light(stage_, *light_);
+    for (const auto* const values : {&light_->direct, &light_->indirect, &light_->reflected})
+        share_on_node(std::span(*values));
+    for (const auto* const corners : {&light_->direct_corners, &light_->indirect_corners})
+        share_on_node(std::span(*corners));
+}
+
+ElementFunction Solver::on_leaves(const GlobalLight& light) const {
+    const std::string& basis = solution_.statistics.basis;
+    const bool constant = light.indirect_corners.empty() || basis == name_in(basis_names, BasisKind::haar) ||
+                          basis == name_in(basis_names, BasisKind::galerkin1);
+    if (!constant) return polynomials_on_leaves(light);
+    return options_.smoothing.value_or(false) ? smoothed_on_leaves(light, stage_.scene.regions().size())
+                                              : constant_on_leaves(light);
+}
+
+bool Solver::keeps_flux() const {
+    return options_.bounces < 0 && (!light_->kept.empty() || keeps_reflected_light(stage_, *light_, options_.seed));
+}
+
+LocalPassDemand Solver::gather_demand(double scale) const {
+    return {.rays = knobs_.gather_rays,
+            .light = scale,
+            .noise = knobs_.gather_noise * scale,
+            .tolerance = knobs_.gather_tolerance * scale,
+            .curved = knobs_.gather_curved,
+            .relative_tolerance = knobs_.gather_relative_tolerance};
+}
+
+const SceneBodies& Solver::bodies() {
+    if (!bodies_) bodies_ = find_bodies(stage_.scene);
+    return *bodies_;
+}
+
+void Solver::record_energy() {
+    EnergyBalance& energy = statistics().energy;
+    energy = energy_balance(solution_, direct_, stage_);
+    if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
+        warn(shines_on_backs(stage_) ? "no light reaches the front of any face: they may be turned inside out"
+                                     : "no light reaches any face: all of it leaves the scene");
 }
 
 }  // namespace exitance
