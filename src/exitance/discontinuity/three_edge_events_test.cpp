@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "exitance/scene/scene.hpp"
@@ -11,6 +12,20 @@
 
 namespace exitance {
 namespace {
+
+/// An infinite straight line.
+struct SightLine {
+    Point at;
+    Vec3 along;
+};
+
+/// Determinant of the three planes through x and each line; 0 if one line of sight from x meets all three lines. It is
+/// quadratic in x, since its cubic part vanishes.
+double three_line_determinant(const Point& x, const std::array<SightLine, 3>& lines) {
+    std::array<Vec3, 3> n;
+    for (std::size_t i = 0; i < 3; ++i) n[i] = cross(lines[i].at - x, lines[i].along);
+    return dot(n[0], cross(n[1], n[2]));
+}
 
 constexpr std::array<SightLine, 3> skew{{{{0, 0, 3}, {1, 0, 0}}, {{0, 0, 2}, {0, 1, 0}}, {{0, 1, 1}, {1, 1, 0}}}};
 

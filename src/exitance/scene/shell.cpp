@@ -118,11 +118,8 @@ void Inspector::find_open_edges() {
     for (const std::uint32_t e : lone) ends.insert(ends.end(), {edges_[e].from, edges_[e].to});
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    for (const std::uint32_t p : ends) {
-        bool is_joint = false;
-        visit_containing_edges(points_[p], HashChains::end, [&](std::uint32_t i) { joined[i] = is_joint = true; });
-        out_.t_joints += is_joint;
-    }
+    for (const std::uint32_t p : ends)
+        visit_containing_edges(points_[p], HashChains::end, [&](std::uint32_t i) { joined[i] = true; });
     for (std::size_t k = 0; k < lone.size(); ++k) {
         const Point &a = points_[edges_[lone[k]].from], &b = points_[edges_[lone[k]].to];
         bool within = joined[k];

@@ -9,7 +9,6 @@ namespace exitance {
 struct Shell {
     std::size_t open_edges = 0;         ///< Edges that belong to only one face and overlap no other edge.
     double open_length = 0;             ///< Total length of the open edges, metres.
-    std::size_t t_joints = 0;           ///< Corners inside another face's edge; harmless.
     std::vector<SurfaceId> turned;      ///< Faces with the opposite orientation of their neighbours.
     std::vector<InsideOut> inside_out;  ///< Closed bodies that are inside out, by face numbers.
     std::vector<Mark> marks;            ///< Marks of turned faces, inside-out bodies and open edges.

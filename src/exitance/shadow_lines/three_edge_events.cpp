@@ -56,12 +56,6 @@ Vec3 line_along(const BlockerEdges::Edge& e) {
 
 }  // namespace
 
-double three_line_determinant(const Point& x, const std::array<SightLine, 3>& lines) {
-    std::array<Vec3, 3> n;
-    for (std::size_t i = 0; i < 3; ++i) n[i] = cross(lines[i].at - x, lines[i].along);
-    return dot(n[0], cross(n[1], n[2]));
-}
-
 ThreeEdgeEventFinder::Sight ThreeEdgeEventFinder::sight(double s, const Point& q0, const Point& q1,
                                                         const BlockerEdges::Edge& e,
                                                         const BlockerEdges::Edge& f) const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -9,12 +8,6 @@
 #include "exitance/visibility/critical_lines.hpp"
 
 namespace exitance {
-
-/// An infinite straight line.
-struct SightLine {
-    Point at;
-    Vec3 along;
-};
 
 /// Points of a receiver from which an edge of the source and two blocker edges appear to meet in one point. They form a
 /// section of a conic, stored as a polyline in the receiver's plane coordinates, metres.
@@ -70,9 +63,5 @@ class ThreeEdgeEventFinder {
     bool umbra_only_ = true;
     double sagitta_ = 0, min_ = 0;
 };
-
-/// Determinant of the three planes through x and each line; 0 if one line of sight from x meets all three lines. It is
-/// quadratic in x, since its cubic part vanishes.
-double three_line_determinant(const Point& x, const std::array<SightLine, 3>& lines);
 
 }  // namespace exitance

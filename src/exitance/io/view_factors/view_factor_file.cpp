@@ -169,16 +169,8 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
 
 }  // namespace
 
-std::string view_factors_csv(const SparseFactors& table) {
-    return whole_text(Csv(table, false), table.size());
-}
-
 std::string view_factors_vf(const SparseFactors& table) {
     return whole_text(Vf(table), table.size());
-}
-
-std::string view_factors_mtx(const SparseFactors& table) {
-    return whole_text(MatrixMarket(table, false), table.size());
 }
 
 Result<SparseFactors> read_view_factors(const std::string& path) {

@@ -111,10 +111,4 @@ std::size_t DmTree::construction_edges() const {
         }));
 }
 
-std::uint32_t DmTree::face_at(const Vec2& p) const {
-    std::uint32_t n = 0;
-    while (nodes_[n].face == WingedEdgeMesh::none) n = nodes_[n].distance(p) >= 0 ? nodes_[n].left : nodes_[n].right;
-    return nodes_[n].face;
-}
-
 }  // namespace exitance

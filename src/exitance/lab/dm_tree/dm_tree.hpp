@@ -26,8 +26,6 @@ class DmTree {
     const WingedEdgeMesh& mesh() const { return mesh_; }
     std::size_t construction_edges() const;  ///< Number of edges inside the outline.
     std::size_t memory_bytes() const { return mesh_.memory_bytes() + nodes_.size() * sizeof(Node); }
-    /// Returns the face that contains a point of the outline. O(depth).
-    std::uint32_t face_at(const Vec2& p) const;
 
   private:
     struct Node {

@@ -142,16 +142,6 @@ LearnedFunction between_lines(const std::function<double(double, double)>& kerne
 
 }  // namespace
 
-std::vector<double> errors_of_growing_line(const std::function<double(double)>& f, std::span<const std::size_t> units,
-                                           const GrowingLinesOptions& options) {
-    return errors_of({1, 2,
-                      [](std::span<const double> s) {
-                          return std::vector{s[0], 0.0};
-                      },
-                      [&](std::span<const double> s) { return f(s[0]); }},
-                     units, options);
-}
-
 std::vector<double> errors_of_growing_kernel(const std::function<double(double, double)>& kernel, double h,
                                              std::span<const std::size_t> units, const GrowingLinesOptions& options) {
     return errors_of(between_lines(kernel, h), units, options);

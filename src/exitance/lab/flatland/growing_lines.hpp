@@ -17,14 +17,9 @@ struct GrowingLinesOptions {
     std::uint64_t seed = 1;
 };
 
-/// Learns a function of x along a line in the plane by growing cells (k = 1, n = 2: samples are the points (x, 0)).
-/// Returns the relative L2 error for each number of units, which must be ascending. This is the method of
-/// docs/methods/growing_cells.md in two dimensions.
-std::vector<double> errors_of_growing_line(const std::function<double(double)>& f, std::span<const std::size_t> units,
-                                           const GrowingLinesOptions& options);
-
-/// Likewise for a kernel between two parallel lines at a distance of h (k = 2, n = 4: samples are pairs of points (x,
-/// 0), (y, h)).
+/// Learns a kernel between two parallel lines at a distance of h by growing cells (k = 2, n = 4: samples are pairs of
+/// points (x, 0), (y, h)). Returns the relative L2 error for each number of units, which must be ascending. This is the
+/// method of docs/methods/growing_cells.md in two dimensions.
 std::vector<double> errors_of_growing_kernel(const std::function<double(double, double)>& kernel, double h,
                                              std::span<const std::size_t> units, const GrowingLinesOptions& options);
 

@@ -13,15 +13,6 @@ double smooth(double x, double y) {
     return 1 / ((x - y) * (x - y) + 1);
 }
 
-TEST(GrowingLines, LearnAFunctionAlongALine) {
-    for (const CellWeights weights : {CellWeights::least_squares, CellWeights::normalised_least_squares}) {
-        const auto errors =
-            errors_of_growing_line([](double x) { return std::sin(5 * x) + 2; }, counts, {.weights = weights});
-        EXPECT_LT(errors[0], 0.05);
-        EXPECT_LT(errors[1], errors[0]);
-    }
-}
-
 // For comparison, an independent program reached, for a similar kernel with 16 and 64 units, errors of 7% and 6.7% by
 // least squares, and of 4.8% and 0.5% by normalised least squares.
 TEST(GrowingLines, LearnASmoothKernelBetterByLeastSquaresThanByTheDeltaRule) {

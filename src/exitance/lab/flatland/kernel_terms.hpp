@@ -26,10 +26,6 @@ class KernelTerms {
     /// space.
     std::vector<double> errors(std::span<const std::size_t> m) const;
 
-    /// The coefficients in the finest space, and those reconstructed from all terms.
-    const std::vector<double>& finest() const { return finest_; }
-    std::vector<double> reconstructed() const { return reconstruct(terms_); }
-
   private:
     void step_rows(std::vector<double>& a, std::size_t intervals, std::size_t rows, bool back) const;
     void step_columns(std::vector<double>& a, std::size_t intervals, std::size_t columns, bool back) const;

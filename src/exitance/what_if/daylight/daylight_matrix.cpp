@@ -62,19 +62,4 @@ DaylightMatrix DaylightRows::rows_of(std::span<const Receiver> sensors, std::siz
     return out;
 }
 
-DaylightMatrix make_daylight_matrix(const Scene& scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                                    const DaylightOptions& options, Progress& progress) {
-    progress.phase("rays");
-    DaylightTransport transport(scene, patches, nullptr, options.seed);
-    transport.make_elements(options.elements);
-    transport.cast_rows(options.rays_an_element);
-    progress.phase("solve");
-    const ElementLight light = transport.solve(SkyColumns::of_patches(patches.size()));
-    progress.phase("sensors");
-    const std::vector<Receiver> places = sensor_places(scene, transport.stage().occluders, sensors);
-    return DaylightRows(transport, light, patches, options.rays_a_sensor).rows(places, 0, [](std::size_t) {
-        return nullptr;
-    });
-}
-
 }  // namespace exitance

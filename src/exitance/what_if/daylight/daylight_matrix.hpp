@@ -75,8 +75,4 @@ class DaylightRows {
     unsigned rays_a_sensor_;
 };
 
-/// Computes the daylight matrix of all sensors.
-DaylightMatrix make_daylight_matrix(const Scene& scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                                    const DaylightOptions& options, Progress& progress);
-
 }  // namespace exitance

@@ -332,12 +332,6 @@ Result<DaylightSummary> run_year(DaylightSimulation& simulation, const DaylightT
 
 }  // namespace
 
-Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
-                                      Progress& progress, const StopRequest& stop) {
-    DaylightSimulation simulation(scene, task, progress, stop);
-    return run_year(simulation, task, sink);
-}
-
 Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& task, Progress& progress,
                                      const StopRequest& stop) {
     const std::size_t n = task.sensors.size(), hours = task.hours.size();

@@ -85,10 +85,6 @@ class DaylightSimulation {
 Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,
                                    const DaylightSink& sink, const StopRequest& stop);
 
-/// Finds the light and evaluates all sensors.
-Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
-                                      Progress& progress, const StopRequest& stop);
-
 /// Illuminances of a year.
 struct DaylightYear {
     std::size_t sensors = 0;
@@ -108,7 +104,7 @@ struct DaylightResults {
     std::vector<std::string> warnings;     ///< See DaylightSimulation::warnings().
 };
 
-/// Runs simulate_year() and keeps all results. About 75 kB per sensor.
+/// Finds the light, evaluates all sensors and keeps all results. About 75 kB per sensor.
 Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& task, Progress& progress,
                                      const StopRequest& stop);
 

@@ -263,7 +263,10 @@ static std::vector<VariantResult> variants_of(const Scene& scene, const Daylight
         out.insert(out.end(), block.variants.begin(), block.variants.end());
         return {};
     };
-    EXPECT_TRUE(simulate_year(scene, task, keep, progress, StopRequest()));
+    const StopRequest stop;
+    DaylightSimulation simulation(scene, task, progress, stop);
+    EXPECT_TRUE(simulation.find_light());
+    EXPECT_TRUE(simulation.evaluate({0, task.sensors.size()}, keep));
     return out;
 }
 

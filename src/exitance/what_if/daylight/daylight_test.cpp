@@ -78,6 +78,19 @@ TEST(Daylight, InTheOpenAgreesWithTheWeather) {
     EXPECT_EQ(results->summary.sunlight_exposure, 0);  // a day has less than 250 hours
 }
 
+/// Daylight matrix of all sensors.
+DaylightMatrix matrix_of(const Scene& scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
+                         const DaylightOptions& options) {
+    DaylightTransport transport(scene, patches, nullptr, options.seed);
+    transport.make_elements(options.elements);
+    transport.cast_rows(options.rays_an_element);
+    const ElementLight light = transport.solve(SkyColumns::of_patches(patches.size()));
+    const std::vector<Receiver> places = sensor_places(scene, transport.stage().occluders, sensors);
+    return DaylightRows(transport, light, patches, options.rays_a_sensor).rows(places, 0, [](std::size_t) {
+        return nullptr;
+    });
+}
+
 /// Daylight factor of every sensor, per cent.
 static std::vector<double> daylight_factors(const DaylightMatrix& matrix, const SkyPatches& patches) {
     constexpr double ground = 0.2;
@@ -98,8 +111,7 @@ TEST(Daylight, InARoomAgreesWithASolveUnderTheSameSky) {
     const std::vector<Light> light = RadiosityFunction(solution).at(sensors);
     const SkyPatches patches(1);
     Progress progress;
-    const DaylightMatrix matrix =
-        make_daylight_matrix(scene(true), sensors, patches, {.elements = 800, .rays_an_element = 128}, progress);
+    const DaylightMatrix matrix = matrix_of(scene(true), sensors, patches, {.elements = 800, .rays_an_element = 128});
     const std::vector<double> factors = daylight_factors(matrix, patches);
     for (std::size_t i = 0; i < sensors.size(); ++i)
         EXPECT_NEAR(factors[i], light[i].irradiance[0], 0.04 * light[i].irradiance[0]) << i;
@@ -124,8 +136,8 @@ TEST(Daylight, OnTheEdgeOfAWallIsThatInside) {
     const DaylightSite site{.place = {47.4, 8.5, 400}, .zone = 1};
     Progress progress;
     const auto factors = [&](const std::vector<ProbePoint>& sensors) {
-        const DaylightMatrix matrix = make_daylight_matrix(
-            dark, sensors, patches, {.elements = 300, .rays_an_element = 64, .rays_a_sensor = 1024}, progress);
+        const DaylightMatrix matrix =
+            matrix_of(dark, sensors, patches, {.elements = 300, .rays_an_element = 64, .rays_a_sensor = 1024});
         return daylight_factors(matrix, patches);
     };
     const auto found = factors(on), expected = factors(beside);
@@ -313,7 +325,10 @@ TEST(Daylight, BlocksFollowEachOtherAndGiveAllSensors) {
                           all->year.illuminance[h * task.sensors.size() + block.first + i]);
         return {};
     };
-    ASSERT_TRUE(simulate_year(room, task, compare, progress, StopRequest()));
+    const StopRequest stop;
+    DaylightSimulation simulation(room, task, progress, stop);
+    ASSERT_TRUE(simulation.find_light());
+    ASSERT_TRUE(simulation.evaluate({0, sensors.size()}, compare));
     EXPECT_EQ(seen, task.sensors.size());
 }
 

@@ -383,11 +383,4 @@ Result<std::vector<ObjPlaces>> read_obj_places(const std::string& path) {
     return ObjReader(path, *text).read_places();
 }
 
-Result<SceneDescription> load_obj(const std::string& path) {
-    ReadScene read = read_obj(path);
-    sort_findings(read.findings);
-    if (has_errors(read.findings)) return error_of(read.findings);
-    return std::move(read.description);
-}
-
 }  // namespace exitance

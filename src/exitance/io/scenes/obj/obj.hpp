@@ -49,7 +49,4 @@ struct ObjPlaces {
 /// (cannot_read): the file cannot be read.
 Result<std::vector<ObjPlaces>> read_obj_places(const std::string& path);
 
-/// Like read_obj(), but returns the first error if there is any.
-Result<SceneDescription> load_obj(const std::string& path);
-
 }  // namespace exitance

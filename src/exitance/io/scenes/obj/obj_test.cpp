@@ -9,6 +9,7 @@
 #include "exitance/io/pictures/png.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/scene/findings.hpp"
+#include "support/load_obj.hpp"
 
 namespace exitance {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "exitance/io/scenes/obj/obj.hpp"
 #include "exitance/samples/generate.hpp"
+#include "support/load_obj.hpp"
 #include "support/places.hpp"
 
 namespace exitance {
