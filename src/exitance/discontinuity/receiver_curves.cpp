@@ -291,7 +291,7 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
     const double sagitta = max_sagitta * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     std::vector<ThreeEdgeEvent> conics;
     ThreeEdgeEventFinder(stage_->occluders, *edges_, options_.stop)
-        .find(out.frame, region, box.lo, box.hi, source, edges, options_.conics == ConicCurves::at_umbras, sagitta,
+        .find({out.frame, region, box.lo, box.hi}, source, edges, options_.conics == ConicCurves::at_umbras, sagitta,
               conics);
     for (const ThreeEdgeEvent& c : conics)
         for (std::size_t i = 1; i < c.places.size(); ++i)

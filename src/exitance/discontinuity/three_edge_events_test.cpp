@@ -62,7 +62,7 @@ TEST(ThreeEdgeEvents, LieOnTheirConicAndBoundTheUmbra) {
     const EventSource source{lamp.loops, lamp.plane, RegionId(1), false, 2};
     std::vector<ThreeEdgeEvent> events;
     ThreeEdgeEventFinder finder(stage.occluders, edges);
-    finder.find(frame, RegionId(0), {-4, -4}, {4, 4}, source, all, false, 1e-4, events);
+    finder.find({frame, RegionId(0), {-4, -4}, {4, 4}}, source, all, false, 1e-4, events);
     ASSERT_FALSE(events.empty());
     const std::array<SightLine, 2> blades{{{{0, -3, 2}, {0, 6, 0.3}}, {{-3, -0.4, 1}, {6, 0.8, 0.2}}}};
     const std::array<SightLine, 4> sides{
@@ -82,7 +82,7 @@ TEST(ThreeEdgeEvents, LieOnTheirConicAndBoundTheUmbra) {
     // of the source.
     EXPECT_GT(events.size(), at_umbra);
     std::vector<ThreeEdgeEvent> umbra;
-    finder.find(frame, RegionId(0), {-4, -4}, {4, 4}, source, all, true, 1e-4, umbra);
+    finder.find({frame, RegionId(0), {-4, -4}, {4, 4}}, source, all, true, 1e-4, umbra);
     EXPECT_EQ(umbra.size(), at_umbra);
     // The second derivative of direct light jumps there: the difference between both sides stays when the step is
     // halved, whereas that of smooth light would halve. Next to an umbra, one side is dark.

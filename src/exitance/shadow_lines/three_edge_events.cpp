@@ -178,10 +178,10 @@ void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const Blocke
     }
 }
 
-void ThreeEdgeEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
+void ThreeEdgeEventFinder::find(const EventReceiver& receiver, const EventSource& source,
                                 std::span<const std::uint32_t> among, bool umbra_only, double sagitta,
                                 std::vector<ThreeEdgeEvent>& events) {
-    frame_ = &receiver, source_ = &source, own_ = own, lo_ = lo, hi_ = hi;
+    frame_ = &receiver.frame, source_ = &source, own_ = receiver.region, lo_ = receiver.lo, hi_ = receiver.hi;
     umbra_only_ = umbra_only, sagitta_ = sagitta, min_ = 4 * edges_->tolerance();
     if (source.is_point) return;
     for (const auto& loop : source.loops)

@@ -17,6 +17,13 @@ struct ThreeEdgeEvent {
     bool may_bound_umbra = false;
 };
 
+/// A rectangle of a receiver, in which events are searched.
+struct EventReceiver {
+    const PlaneFrame& frame;
+    RegionId region;
+    Vec2 lo, hi;  ///< Corners in the plane's coordinates, metres.
+};
+
 /// Finds the events of one source edge and two blocker edges (EEE). From each point q of the source's edge one line
 /// passes through both blocker edges. Its position on each is a ratio of two functions linear in q. The part of the
 /// source's edge whose lines meet both edges, in front of the receiver, therefore has a closed form. Other occluders on
@@ -28,13 +35,11 @@ class ThreeEdgeEventFinder {
     ThreeEdgeEventFinder(const Occluders& occluders, const BlockerEdges& edges, const StopRequest* stop = nullptr)
         : occluders_(&occluders), edges_(&edges), stop_(stop) {}
 
-    /// Appends the events of the edges numbered `among` inside the box lo..hi of the receiver (plane coordinates,
-    /// metres).
+    /// Appends the events of the edges numbered `among` inside the rectangle of the receiver.
     /// umbra_only  only events that may bound an umbra
     /// sagitta  maximum distance of a polyline from its conic, metres
-    void find(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
-              std::span<const std::uint32_t> among, bool umbra_only, double sagitta,
-              std::vector<ThreeEdgeEvent>& events);
+    void find(const EventReceiver& receiver, const EventSource& source, std::span<const std::uint32_t> among,
+              bool umbra_only, double sagitta, std::vector<ThreeEdgeEvent>& events);
 
   private:
     struct Interval {

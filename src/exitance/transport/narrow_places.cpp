@@ -12,8 +12,6 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t samples = 4;  ///< Points per leaf.
-constexpr double coplanar =  ///< Distance of touching surfaces over the scene's size, as in Occluders::is_covered.
-    1e-6;
 
 /// True if a front lies before the leaf at one of some sample points, nearer than `widths` times the leaf's width but
 /// farther than `touching`, metres.
@@ -37,7 +35,7 @@ bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double 
 }  // namespace
 
 bool is_narrow_leaf(const Stage& stage, const ElementTree& tree, ElementId e) {
-    return is_narrow(stage, tree, e, coplanar * stage.scene.size(), 1);
+    return is_narrow(stage, tree, e, coplanar_share * stage.scene.size(), 1);
 }
 
 Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const ElementTree& tree) {
@@ -105,7 +103,7 @@ double share_of_light_in_gaps(const Stage& stage, const DirectProjection& direct
     constexpr std::size_t min_samples = 4096;
     // gap height as a share of the element's size; with 1, elements as large as a wall would make a whole room a gap
     constexpr double half = 0.5;
-    const double touching = coplanar * stage.scene.size();
+    const double touching = coplanar_share * stage.scene.size();
     const std::vector<ElementId> leaves = direct.tree.leaves();
     const std::size_t step = leaves.size() / min_samples + 1;
     std::vector<std::uint8_t> narrow((leaves.size() + step - 1) / step);

@@ -42,17 +42,17 @@ std::vector<Spectrum> mean_residual(const Stage& stage, const GlobalLight& light
 
 }  // namespace
 
-std::vector<ElementFunction> corrected_sums(const Stage& stage, const GlobalLight& light,
-                                            const ElementFunction& indirect, const DirectProjection& direct,
-                                            const Spectrum& c, RayBudget rays, double share, std::uint64_t seed) {
-    std::vector<ElementFunction> out = delivered_functions(stage.scene, indirect, direct, Spectrum(1.0) - c, c);
-    const std::vector<Spectrum> r = mean_residual(stage, light, indirect, out, share);
-    const std::size_t regions = stage.scene.regions().size();
-    const ElementLocator locator(light.tree, regions);
-    const RayRows F(stage, light.tree, light.numbering, locator, rays, seed, Dealing::by_element, RowsHeld::by_owner);
+std::vector<ElementFunction> corrected_sums(const RefinementInput& in, double share) {
+    const GlobalLight& light = in.light;
+    const Scene& scene = in.stage.scene;
+    std::vector<ElementFunction> out = delivered_functions(scene, in.indirect, in.direct, Spectrum(1.0) - in.c, in.c);
+    const std::vector<Spectrum> r = mean_residual(in.stage, light, in.indirect, out, share);
+    const ElementLocator locator(light.tree, scene.regions().size());
+    const RayRows F(in.stage, light.tree, light.numbering, locator, in.rays, in.seed, Dealing::by_element,
+                    RowsHeld::by_owner);
     std::vector<Spectrum> e = r;
     solve_radiosity(
-        {F, leaf_reflectances(stage.scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
+        {F, leaf_reflectances(scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
         Relaxation::gmres, e, {.residual = calibrated::refined_residual, .max_iterations = 200});
     ElementFunction& b = out.front();
     for (ElementId leaf : b.tree.leaves()) {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "exitance/solution/solution.hpp"
-#include "exitance/solve/global_light.hpp"
-#include "exitance/transport/direct_projection.hpp"
-#include "exitance/transport/ray_rows.hpp"
+#include "exitance/methods/light/refinement_input.hpp"
 
 namespace exitance {
 
@@ -16,8 +13,6 @@ namespace exitance {
 /// this step, constant elements spread light evenly and thus transport it too far along a tube. Every reflection
 /// multiplies that error, and no gather corrects it. `share`: permitted error of one element in a sum. Source:
 /// [Atkinson97], part "two-grid iteration". O(leaves x elements of a sum).
-std::vector<ElementFunction> corrected_sums(const Stage& stage, const GlobalLight& light,
-                                            const ElementFunction& indirect, const DirectProjection& direct,
-                                            const Spectrum& c, RayBudget rays, double share, std::uint64_t seed);
+std::vector<ElementFunction> corrected_sums(const RefinementInput& in, double share);
 
 }  // namespace exitance

@@ -28,7 +28,7 @@ TEST(RefinedLight, CorrectsGatheredLightInAFurnace) {
     }
     constexpr double share = 1e-4;
     const std::vector<ElementFunction> parts =
-        corrected_sums(stage, light, gathered, direct, Spectrum(), {.average = 64}, share, 1);
+        corrected_sums({stage, light, gathered, direct, Spectrum(), {.average = 64}, 1}, share);
     for (ElementId e : direct.tree.leaves()) {
         double b = 0;
         for (const ElementFunction& part : parts) b += part.at({e, direct.tree.centre(e)})[0];

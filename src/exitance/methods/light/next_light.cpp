@@ -37,13 +37,15 @@ std::vector<Spectrum> mean_change(const Stage& stage, const GlobalLight& light,
 }
 
 /// Solves for ((I - rho F)^-1 - I) r on the leaves of the method.
-std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light, const std::vector<Spectrum>& r,
-                                    RayBudget rays, std::uint64_t seed) {
-    const ElementLocator locator(light.tree, stage.scene.regions().size());
-    const RayRows F(stage, light.tree, light.numbering, locator, rays, seed, Dealing::by_element, RowsHeld::by_owner);
+std::vector<Spectrum> late_response(const RefinementInput& in, const std::vector<Spectrum>& r) {
+    const GlobalLight& light = in.light;
+    const Scene& scene = in.stage.scene;
+    const ElementLocator locator(light.tree, scene.regions().size());
+    const RayRows F(in.stage, light.tree, light.numbering, locator, in.rays, in.seed, Dealing::by_element,
+                    RowsHeld::by_owner);
     std::vector<Spectrum> out = r;
     solve_radiosity(
-        {F, leaf_reflectances(stage.scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
+        {F, leaf_reflectances(scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
         Relaxation::gmres, out, {.residual = calibrated::refined_residual, .max_iterations = 200});
     for (std::size_t i = 0; i < out.size(); ++i) out[i] -= r[i];
     return out;
@@ -71,16 +73,15 @@ ElementFunction less(const ElementFunction* a, ElementFunction b) {
 
 }  // namespace
 
-NextLight next_light(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
-                     const DirectProjection& direct, const Spectrum& c, NextLight before, RayBudget rays,
-                     std::uint64_t seed) {
-    EXI_CHECK(light.on_projection);
-    NextLight out{delivered_functions(stage.scene, indirect, direct, Spectrum(1.0) - c, c)};
+NextLight next_light(const RefinementInput& in, NextLight before) {
+    EXI_CHECK(in.light.on_projection);
+    const Scene& scene = in.stage.scene;
+    NextLight out{delivered_functions(scene, in.indirect, in.direct, Spectrum(1.0) - in.c, in.c)};
     // The method's light includes direct light; later steps have the same direct light in a separate part.
     const bool is_first = before.parts.size() == 1;
     const std::vector<Spectrum> r =
-        mean_change(stage, light, std::span(out.parts).first(is_first ? 2 : 1), before.parts[0]);
-    add_constants(out.parts[0], light, late_response(stage, light, r, rays, seed), stage.scene.regions().size());
+        mean_change(in.stage, in.light, std::span(out.parts).first(is_first ? 2 : 1), before.parts[0]);
+    add_constants(out.parts[0], in.light, late_response(in, r), scene.regions().size());
     out.rest.push_back(less(is_first ? &out.parts[1] : nullptr, std::move(before.parts[0])));
     return out;
 }

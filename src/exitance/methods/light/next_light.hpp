@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exitance/methods/light/light_functions.hpp"
-#include "exitance/transport/ray_rows.hpp"
+#include "exitance/methods/light/refinement_input.hpp"
 
 namespace exitance {
 
@@ -26,11 +26,9 @@ struct NextLight {
     }
 };
 
-/// Computes the step after `before`, whose gather is delivered as `indirect`. `light` must be on the leaves of
-/// `direct`. Moves from `before`. O(leaves + rays).
-NextLight next_light(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
-                     const DirectProjection& direct, const Spectrum& c, NextLight before, RayBudget rays,
-                     std::uint64_t seed);
+/// Computes the step after `before`, whose gather is delivered as `in.indirect`. `in.light` must be on the leaves of
+/// `in.direct`. Moves from `before`. O(leaves + rays).
+NextLight next_light(const RefinementInput& in, NextLight before);
 
 /// NextLight as functions that rays can read.
 class ReadNextLight {

@@ -41,7 +41,8 @@ class StepFurnace : public testing::Test {
     }
 
     NextLight step(NextLight before, double delivered) const {
-        return next_light(stage, light, constant(delivered), direct, Spectrum(), std::move(before), {.average = 64}, 1);
+        const ElementFunction indirect = constant(delivered);
+        return next_light({stage, light, indirect, direct, Spectrum(), {.average = 64}, 1}, std::move(before));
     }
 };
 

@@ -10,6 +10,7 @@
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/direct_light_noise.hpp"
 #include "exitance/evaluate/energy.hpp"
+#include "exitance/methods/light/corrected_sums.hpp"
 #include "exitance/methods/plan/attempt_forecast.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/solve_archive.hpp"
@@ -149,7 +150,8 @@ void StandardSolver::attempt() {
         reach(Step::correct_sums);
     }
     if (step_ == Step::correct_sums && corrects_sums()) {
-        if (corrected_.empty()) corrected_ = corrected_sums();
+        if (corrected_.empty())
+            corrected_ = corrected_sums(refinement_of(solution_.indirect), knobs_.gather_element_share);
         const bool whole = deliver(parts_to_sum(corrected_), b, true);
         if (!whole) return;
     }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "exitance/calibration/error_budget.hpp"
-#include "exitance/methods/light/corrected_sums.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/plan/method_memory.hpp"
 #include "exitance/methods/solve_report.hpp"
@@ -88,7 +87,7 @@ void StandardSolver::take_two_grid_step() {
     // which it was gathered, so that only the noise of rays is corrected.
     ElementFunction gathered = solution_.indirect;
     if (mean(steps_.sent) > 0) scale(gathered, conserving_scale(steps_.sent, power(gathered)));
-    next_ = next_light(stage_, *light_, gathered, direct_, share_, std::move(next_), knobs_.solve_rays, options_.seed);
+    next_ = next_light(refinement_of(gathered), std::move(next_));
     for (const auto* const functions : {&next_.parts, &next_.rest})
         for (const ElementFunction& f : *functions) share_on_node(std::span(f.values));
     steps_.not_local = not_local(error_parts());
@@ -103,9 +102,8 @@ std::vector<ElementGather> StandardSolver::parts_to_sum(std::span<const ElementF
     return out;
 }
 
-std::vector<ElementFunction> StandardSolver::corrected_sums() const {
-    return exitance::corrected_sums(stage_, *light_, solution_.indirect, direct_, share_, knobs_.solve_rays,
-                                    knobs_.gather_element_share, options_.seed);
+RefinementInput StandardSolver::refinement_of(const ElementFunction& indirect) const {
+    return {stage_, *light_, indirect, direct_, share_, knobs_.solve_rays, options_.seed};
 }
 
 Spectrum StandardSolver::direct_share() const {

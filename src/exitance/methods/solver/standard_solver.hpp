@@ -92,8 +92,8 @@ class StandardSolver final : public Solver {
     bool corrects_sums() const { return gathers() && sums_ && knobs_.corrects_sums; }
     /// Returns functions as element gathers; empty if light is sampled by rays.
     std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const;
-    /// Returns the light to gather after one refinement step on the delivered light, in parts (`corrected_sums`).
-    std::vector<ElementFunction> corrected_sums() const;
+    /// Returns the input of a refinement step on a function gathered from the method's light.
+    RefinementInput refinement_of(const ElementFunction& indirect) const;
     Spectrum direct_share() const;
 
     // The delivered function.
