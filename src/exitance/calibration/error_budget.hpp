@@ -76,8 +76,8 @@ class ErrorBudget {
     }
     double exported_mesh() const { return calibrated::interpolant_error * requested_; }
 
-    /// Where the projection is as wrong as the solution, this error adds a quarter to the squared differences that a
-    /// check finds; where the projection is worse, and checks matter most, it adds less.
+    /// This error adds a quarter to the squared differences that a check finds if the projection is as wrong as the
+    /// solution. If the projection is worse, and checks matter most, it adds less.
     double checked_hit() const {
         return std::clamp(checked_hit_share * requested_, min_direct_error, max_checked_error);
     }

@@ -18,7 +18,7 @@ class BodyDemand {
     /// Records an attempt for bodies. Returns true if it is the first one.
     bool begin_attempt(double worst);
 
-    /// Where the error of a body is reduced.
+    /// Light whose error is reduced for the sake of a body.
     enum class Cause : std::uint8_t {
         gathered,  ///< The light gathered on the body.
         seen       ///< The direct light of the elements that the body sees.
