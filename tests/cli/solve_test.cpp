@@ -237,7 +237,7 @@ TEST(ProgramSolve, ASignalEndsTheWorkAndAvailableLightIsWritten) {
         const TemporaryFolder folder;
         const std::string solution = folder / "room.h5";
         RunningProgram run(
-            {"solve", write_small_room(folder), "-o", solution, "--error", "0.001", "--progress", "json"});
+            {"solve", write_small_room(folder), "-o", solution, "--error", "0.003", "--progress", "json"});
         ASSERT_TRUE(run.wait_for("\"certify\""));
         run.send(signal);
         EXPECT_EQ(run.finish().status, status);
