@@ -124,19 +124,16 @@ void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& sour
 
 /// Adds the light of the sky through openings, after the sky itself, unless it is too little to matter.
 void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
-    const double left_out = openings().choose(at.x, at.n, room.cells_);
+    const double unaimed = openings().choose(at.x, at.n, room.cells_) * mean(room.aim_.open);
     Spectrum light;
-    double chosen = 0;
     for (const PortalCell& cell : room.cells_) {
         const Vec3 w = normalized(cell.corner + 0.5 * (cell.u + cell.v) - at.x);
-        const double share = PortalAim::form_factor(cell, at.x, at.n);
-        light += share * direct_->scene().distant().radiosity(w, false), chosen += share;
+        light += PortalAim::form_factor(cell, at.x, at.n) * direct_->scene().distant().radiosity(w, false);
     }
-    const double of_all = chosen > 0 ? (chosen + left_out) / chosen * mean(light) : 0;
-    if (of_all <= little * accuracy.allowed(min_share * mean(room.aim_.open)))
+    if (mean(light) + unaimed <= little * accuracy.allowed(min_share * mean(room.aim_.open)))
         room.cells_.clear();
     else
-        room.parts_.back().unaimed = of_all - mean(light);
+        room.parts_.back().unaimed = unaimed;
     room.portals_.set(room.cells_, at.x, at.n);
     if (!room.cells_.empty()) room.parts_.push_back({.kind = Part::Kind::openings, .open = light});
 }

@@ -8,6 +8,7 @@
 
 #include "exitance/base/polygon.hpp"
 #include "exitance/base/random.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/portal_aim.hpp"
 
 namespace exitance {
@@ -273,6 +274,14 @@ PortalCell SkySearch::opening(const Escape& way) {
     return out.area > 0 && passes_near(way.from, way.direction, out) ? out : PortalCell();
 }
 
+/// Share of rays of density cos / pi about n that lead from x to a parallelogram before it. Exact where the distant
+/// form does not hold: near the parallelogram, and where the horizon of x cuts it.
+double share_of(const PortalCell& cell, const Point& x, const Normal& n) {
+    if (const double distant = PortalAim::form_factor(cell, x, n); distant > 0) return distant;
+    const Vec3 to = cell.corner - x;
+    return std::abs(contour_sum(n, std::array{to, to + cell.u, to + cell.u + cell.v, to + cell.v}));
+}
+
 /// Returns the mean square of the share of rays n to 2n that escape, over places where rays 0 to n - 1 were blocked.
 /// One more escaping ray is assumed, so that the result is above 0.
 double mean_square_hidden(const std::vector<std::uint64_t>& arrivals, std::uint32_t n) {
@@ -307,7 +316,7 @@ double SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCe
     std::vector<std::pair<double, std::uint32_t>> best;
     for (std::uint32_t i = 0; i < cells_.size(); ++i) {
         const bool is_indoors = dot(cells_[i].corner - x, cells_[i].n) > 0;
-        const double share = is_indoors ? PortalAim::form_factor(cells_[i], x, n) : 0;
+        const double share = is_indoors ? share_of(cells_[i], x, n) : 0;
         if (share > 0) best.push_back({-share, i});
     }
     double left_out = 0;
@@ -317,7 +326,14 @@ double SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCe
         best.resize(PortalAim::max_targets);
     }
     std::sort(best.begin(), best.end());
-    for (const auto& [share, i] : best) out.push_back(cells_[i]);
+    std::vector<PortalCell> chosen, parts;
+    for (const auto& [share, i] : best) chosen.push_back(cells_[i]);
+    for (const PortalCell& cell : cut_near_cells(chosen, x, PortalAim::max_targets, parts)) {
+        if (PortalAim::can_be_aimed_at(cell, x, n))
+            out.push_back(cell);
+        else
+            left_out += share_of(cell, x, n);
+    }
     return left_out;
 }
 

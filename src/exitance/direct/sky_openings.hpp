@@ -34,8 +34,8 @@ class SkyOpenings {
 
     /// Parallelograms that cover the openings, with normals that point outdoors.
     std::span<const PortalCell> cells() const { return cells_; }
-    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::max_targets. Returns the
-    /// sum of the form factors of the others.
+    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::max_targets; those near x are
+    /// cut into parts. Returns the sum of the form factors of the others, to which unaimed rays must lead.
     double choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
 
     /// Root mean square of the share of the sky's light that arrives outside of all openings at places where the first

@@ -207,6 +207,42 @@ TEST(RayLight, LightThroughAWindowIsUnbiasedAndItsVarianceIsKnown) {
     }
 }
 
+TEST(RayLight, LightBesideALargeWindowIsNotMissed) {
+    // Rays are not aimed at a window that is nearer than its length, unless it is cut into parts.
+    for (const Placing& placing : {Placing(), Placing{.turn = 0.7, .move = {100, -100, 30}}, Placing{.scale = 1e-2}}) {
+        const Rooms rooms{.boxes = 10,
+                          .left = 0.5,
+                          .right = 3.5,
+                          .sill = 0.9,
+                          .top = 2.1,
+                          .ground = placing.scale * 30,
+                          .placing = placing,
+                          .light = overcast()};
+        const Scene scene = rooms.make();
+        const Stage stage(scene);
+        PlaceLight::Workspace room;
+        const Locator locator(scene);
+        const Normal up{0, 0, 1};
+        double bias = 0, squares = 0, variance = 0, exact = 0;
+        int count = 0, missed = 0;
+        for (int i = 0; i < 20; ++i)
+            for (int k = 0; k < 20; ++k) {
+                const Point x = rooms.placing({4 * (i + 0.5) / 20, 0.1 + 1.9 * (k + 0.5) / 20, 0});
+                const SurfaceId surface = locator.find(x, up);
+                ASSERT_FALSE(surface.is_none());
+                const RegionId region = scene.surfaces()[surface].region;
+                const double E = mean(stage.direct.irradiance(x, up, region, room.exact));
+                const RayLight::Estimate found = stage.place_light.rays().at(x, up, region, {.relative = 0.05}, room);
+                const double error = mean(found.irradiance) - E;
+                bias += error, squares += error * error, variance += found.variance, exact += E;
+                missed += mean(found.irradiance) < 0.5 * E, ++count;
+            }
+        EXPECT_LT(std::abs(bias), 3 * std::sqrt(variance) + 2e-3 * exact);
+        EXPECT_LT(squares, 1.5 * variance);
+        EXPECT_LE(missed, count / 200);
+    }
+}
+
 TEST(DirectProjection, UsesRaysBetweenManySurfacesBelowASky) {
     // Fewer elements than the projection counts as many.
     const Rooms rooms{.count = 1, .boxes = 80, .left = 0.5, .right = 3.5, .sill = 0.5, .top = 2.5, .light = overcast()};

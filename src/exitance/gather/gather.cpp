@@ -86,43 +86,6 @@ void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell>
     }
 }
 
-/// Cuts parallelograms near x into parts that are shorter than their distance, down to a sixteenth, since rays are not
-/// aimed at parts that are nearer than their length: next to a narrow door, most light comes from its nearest part.
-/// Returns `cells` or the parts, which are stored in `parts`.
-std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, const Point& x,
-                                           std::vector<PortalCell>& parts) {
-    constexpr int max_cuts = 4;
-    const auto is_near = [&](const PortalCell& cell) {
-        const double longest = std::max(squared_norm(cell.u), squared_norm(cell.v));
-        return squared_norm(cell.corner + 0.5 * (cell.u + cell.v) - x) <= longest;
-    };
-    if (std::none_of(cells.begin(), cells.end(), is_near)) return cells;
-    struct Part {
-        PortalCell cell;
-        int cuts;
-    };
-    std::vector<Part> open;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        open.assign(1, {cells[i], 0});
-        const std::size_t left = PortalAim::max_targets - std::min(PortalAim::max_targets, cells.size() - i - 1);
-        while (!open.empty()) {
-            Part part = open.back();
-            open.pop_back();
-            if (part.cuts == max_cuts || parts.size() + open.size() + 2 > left || !is_near(part.cell)) {
-                parts.push_back(part.cell);
-                continue;
-            }
-            Vec3& longer = squared_norm(part.cell.u) > squared_norm(part.cell.v) ? part.cell.u : part.cell.v;
-            longer *= 0.5, part.cell.area *= 0.5, ++part.cuts;
-            const Vec3 step = longer;
-            open.push_back(part);
-            part.cell.corner += step;
-            open.push_back(part);
-        }
-    }
-    return parts;
-}
-
 /// Casts `rays` rays from each of the places of a plane, starting at point `first` of their sequences, and finds the
 /// fronts that they hit. Half of them are aimed at openings if that reduces the noise and if each quarter has an aimed
 /// ray.
@@ -135,7 +98,7 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
     else if (rays >= 2 * min_aimed)
         cells = portals_worth_aiming(stage, own, places[0].x, n);
     std::vector<PortalCell> parts;
-    cells = cut_near_cells(cells, places[0].x, parts);
+    cells = cut_near_cells(cells, places[0].x, PortalAim::max_targets, parts);
     const std::size_t all = places.size() * rays;
     w.origins.resize(all), w.directions.resize(all), w.hits.resize(all), w.quarter.resize(all);
     const unsigned even = cells.empty() ? rays : rays / 2, from = cells.empty() ? first : first / 2;

@@ -3,18 +3,13 @@
 #include <cmath>
 
 namespace exitance {
-namespace {
-
-/// True if some corner is above the plane of x, and x is farther away than the parallelogram is long.
-bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
+bool PortalAim::can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
     const Vec3 to_corner = cell.corner - x;
     const double height = dot(to_corner, n);
     const double highest = height + std::max(0.0, dot(cell.u, n)) + std::max(0.0, dot(cell.v, n));
     const double longest = std::max(squared_norm(cell.u), squared_norm(cell.v));
     return highest > 0 && squared_norm(to_corner + 0.5 * (cell.u + cell.v)) > longest;
 }
-
-}  // namespace
 
 double PortalAim::form_factor(const PortalCell& cell, const Point& x, const Normal& n) {
     if (!can_be_aimed_at(cell, x, n)) return 0;

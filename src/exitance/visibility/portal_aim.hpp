@@ -21,6 +21,9 @@ class PortalAim {
     /// Maximum number of parallelograms at which rays of a place are aimed.
     static constexpr std::size_t max_targets = 32;
 
+    /// True if part of a parallelogram is above the plane of x, and it is farther away than it is long.
+    static bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n);
+
     /// Returns the share of rays of density cos / pi about n that lead to a parallelogram; 0 if it is behind x, or too
     /// near to be aimed at.
     static double form_factor(const PortalCell& cell, const Point& x, const Normal& n);

@@ -71,6 +71,40 @@ void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<P
     }
 }
 
+std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, const Point& x, std::size_t max,
+                                           std::vector<PortalCell>& parts) {
+    constexpr int max_cuts = 4;
+    const auto is_near = [&](const PortalCell& cell) {
+        const double longest = std::max(squared_norm(cell.u), squared_norm(cell.v));
+        return squared_norm(cell.corner + 0.5 * (cell.u + cell.v) - x) <= longest;
+    };
+    if (std::none_of(cells.begin(), cells.end(), is_near)) return cells;
+    struct Part {
+        PortalCell cell;
+        int cuts;
+    };
+    std::vector<Part> open;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        open.assign(1, {cells[i], 0});
+        const std::size_t left = max - std::min(max, cells.size() - i - 1);
+        while (!open.empty()) {
+            Part part = open.back();
+            open.pop_back();
+            if (part.cuts == max_cuts || parts.size() + open.size() + 2 > left || !is_near(part.cell)) {
+                parts.push_back(part.cell);
+                continue;
+            }
+            Vec3& longer = squared_norm(part.cell.u) > squared_norm(part.cell.v) ? part.cell.u : part.cell.v;
+            longer *= 0.5, part.cell.area *= 0.5, ++part.cuts;
+            const Vec3 step = longer;
+            open.push_back(part);
+            part.cell.corner += step;
+            open.push_back(part);
+        }
+    }
+    return parts;
+}
+
 bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell, double beside) {
     const double t = dot(cell.corner - from, cell.n) / dot(direction, cell.n);
     if (!std::isfinite(t)) return false;
