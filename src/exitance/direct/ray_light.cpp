@@ -96,9 +96,9 @@ double RayLight::light_through_openings(const Workspace& room) const {
     for (const Part& part : room.parts_) {
         double share = 1;
         if (part.kind == Part::Kind::sky)
-            share = openings().hidden_sky(min_pilot);
+            share = openings().hidden_sky(part.scene_part, min_pilot);
         else if (part.is_sun && !room.portals_.is_aimed_at(part.seen->at(0.5, 0.5) - part.from))
-            share = openings().hidden_sun(min_pilot);
+            share = openings().hidden_sun(part.scene_part, min_pilot);
         sum += share * mean(part.open);
     }
     return sum;

@@ -137,6 +137,7 @@ struct RayLight::Part {
     Spectrum open;                        ///< Light without occlusion, W/m^2; for `openings`, `others` an estimate.
     const SeenPolygon* seen = nullptr;    ///< The source's polygon, if `kind` is piece.
     double unaimed = 0;                   ///< Light through openings at which no rays are aimed, W/m^2, of the sky.
+    std::uint32_t scene_part = 0;         ///< Part of the scene in SkyOpenings, of the sky and of suns.
     bool is_sun = false;                  ///< True for a disc of the sun.
     Point from = {};                      ///< Viewpoint of a piece: the place, or the scene's middle for the sun.
     std::uint32_t rays = 0;               ///< Rays cast so far: a power of two.

@@ -74,15 +74,17 @@ const SkyOpenings& RayLight::openings() const {
 }
 
 /// Returns the variance of a part. If no ray to the sky or to a sun has arrived, the variance is estimated from the
-/// light that equally many rays miss at the places of SkyOpenings.
+/// light that equally many rays miss at the places of SkyOpenings in the same part of the scene.
 double RayLight::variance(const Part& part) const {
     const bool is_sky = part.kind == Part::Kind::sky, is_sun = part.kind == Part::Kind::piece && part.is_sun;
     const bool finds_nothing = std::all_of(part.blocks.begin(), part.blocks.end(),
                                            [](const Part::Block& block) { return !(max(block.arrived) > 0); });
     double missed = half_hidden * mean(part.open) / part.rays;
-    if (finds_nothing && is_sun) missed = half_hidden * mean(part.open) * openings().hidden_sun(part.rays);
+    if (finds_nothing && is_sun)
+        missed = half_hidden * mean(part.open) * openings().hidden_sun(part.scene_part, part.rays);
     if (finds_nothing && is_sky)
-        missed = std::min(missed, part.unaimed + half_hidden * mean(part.open) * openings().hidden_sky(part.rays));
+        missed = std::min(
+            missed, part.unaimed + half_hidden * mean(part.open) * openings().hidden_sky(part.scene_part, part.rays));
     return part.variance(missed);
 }
 
@@ -106,6 +108,7 @@ void RayLight::add_discs(const Receiver& at, Workspace& room) const {
                                    .source = discs_[i].name,
                                    .open = room.disc_light_[i],
                                    .seen = &discs_[i].seen,
+                                   .scene_part = sky_.empty() ? 0 : openings().part_at(at.x),
                                    .is_sun = true,
                                    .from = direct_->occluders().middle()});
 }
@@ -134,6 +137,7 @@ void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, W
         room.cells_.clear();
     else
         room.parts_.back().unaimed = unaimed;
+    room.parts_.back().scene_part = openings().part_at(at.x);
     room.portals_.set(room.cells_, at.x, at.n);
     if (!room.cells_.empty()) room.parts_.push_back({.kind = Part::Kind::openings, .open = light});
 }

@@ -284,10 +284,12 @@ double share_of(const PortalCell& cell, const Point& x, const Normal& n) {
 
 /// Returns the mean square of the share of rays n to 2n that escape, over places where rays 0 to n - 1 were blocked.
 /// One more escaping ray is assumed, so that the result is above 0.
-double mean_square_hidden(const std::vector<std::uint64_t>& arrivals, std::uint32_t n) {
+template <class Places, class Bits>
+double mean_square_hidden(const Places& places, std::uint32_t n, const Bits& bits_of) {
     const std::uint64_t first = (std::uint64_t{1} << n) - 1;
     double sum = 1.0 / (1.0 * n * n), count = 1;
-    for (const std::uint64_t bits : arrivals) {
+    for (const auto& place : places) {
+        const std::uint64_t bits = bits_of(place);
         if ((bits & first) != 0) continue;
         const double found = std::popcount((bits >> n) & first);
         sum += found * (found - 1) / (1.0 * n * (n - 1.0)), count += 1;
@@ -295,10 +297,11 @@ double mean_square_hidden(const std::vector<std::uint64_t>& arrivals, std::uint3
     return sum / count;
 }
 
-std::vector<double> hidden_after(const std::vector<std::uint64_t>& arrivals) {
+template <class Places, class Bits>
+std::vector<double> hidden_after(const Places& places, const Bits& bits_of) {
     std::vector<double> out;
     for (std::uint32_t n = 2; n <= rays_of_place / 2; n *= 2)
-        out.push_back(std::min(1.0 / n, std::sqrt(mean_square_hidden(arrivals, n))));
+        out.push_back(std::min(1.0 / n, std::sqrt(mean_square_hidden(places, n, bits_of))));
     return out;
 }
 
@@ -367,7 +370,7 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
         add_portal_cells(found, max_cells, cells_);
     }
 
-    std::vector<std::uint64_t> to_sky, to_sun;
+    std::vector<Arrivals> arrivals;
     for (const SearchPlace& place : places) {
         std::uint64_t rest = place.sky;
         for (std::uint64_t left = place.sky; left != 0; left &= left - 1) {
@@ -378,11 +381,42 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
             });
             if (is_known) rest &= ~(std::uint64_t{1} << k);
         }
-        to_sky.push_back(rest);
-        to_sun.push_back(place.sun);
+        arrivals.push_back({place.x, rest, place.sun});
     }
-    sky_.rms = hidden_after(to_sky);
-    if (!suns.empty()) sun_.rms = hidden_after(to_sun);
+    parts_.clear();
+    divide(0, arrivals, !suns.empty());
+}
+
+/// Divides places at the median of their longest extent, down to a few hundred, of which the last ones are a part.
+void SkyOpenings::divide(std::uint32_t node, std::span<Arrivals> places, bool has_suns) {
+    constexpr std::size_t max_places = 256;  // the light that one of so many places finds is known within a sixteenth
+    Box box;
+    for (const Arrivals& place : places) box.add(place.x);
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+        if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
+    if (places.size() <= max_places || !(box.hi[axis] > box.lo[axis])) {
+        ScenePart part{{hidden_after(places, [](const Arrivals& p) { return p.sky; })}, {}};
+        if (has_suns) part.sun.rms = hidden_after(places, [](const Arrivals& p) { return p.sun; });
+        divisions_[node] = {.first = static_cast<std::uint32_t>(parts_.size())};
+        parts_.push_back(std::move(part));
+        return;
+    }
+    const std::size_t half = places.size() / 2;
+    std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(half), places.end(),
+                     [&](const Arrivals& p, const Arrivals& q) { return p.x[axis] < q.x[axis]; });
+    const auto first = static_cast<std::uint32_t>(divisions_.size());
+    divisions_[node] = {axis, places[half].x[axis], first};
+    divisions_.resize(first + 2);
+    divide(first, places.first(half), has_suns);
+    divide(first + 1, places.subspan(half), has_suns);
+}
+
+std::uint32_t SkyOpenings::part_at(const Point& x) const {
+    std::uint32_t node = 0;
+    while (divisions_[node].axis)
+        node = divisions_[node].first + (x[*divisions_[node].axis] < divisions_[node].at ? 0 : 1);
+    return divisions_[node].first;
 }
 
 }  // namespace exitance

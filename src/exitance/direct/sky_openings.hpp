@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace exitance {
 /// The rectangle need not cover the opening completely: unaimed rays find the rest.
 ///
 /// The same places give the light that a few rays miss: if the first n rays found nothing, it is the light that the
-/// next n rays find.
+/// next n rays find. It is known for parts of the scene with some hundred places each, since a small room in a large
+/// scene misses more than the mean of all places.
 class SkyOpenings {
   public:
     /// A sun's disc, as seen from every place.
@@ -34,15 +36,17 @@ class SkyOpenings {
 
     /// Parallelograms that cover the openings, with normals that point outdoors.
     std::span<const PortalCell> cells() const { return cells_; }
-    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::max_targets; those near x are
-    /// cut into parts. Returns the sum of the form factors of the others, to which unaimed rays must lead.
+    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::max_targets; those near x
+    /// are cut into parts. Returns the sum of the form factors of the others, to which unaimed rays must lead.
     double choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
 
-    /// Root mean square of the share of the sky's light that arrives outside of all openings at places where the first
-    /// n rays found nothing.
-    double hidden_sky(std::uint32_t n) const { return sky_.after(n); }
+    /// The part of the scene to which a point belongs: as far as rays miss light, its places are alike.
+    std::uint32_t part_at(const Point& x) const;
+    /// Root mean square of the share of the sky's light that arrives outside of all openings, at places of a part of
+    /// the scene where the first n rays found nothing.
+    double hidden_sky(std::uint32_t part, std::uint32_t n) const { return parts_[part].sky.after(n); }
     /// Like hidden_sky(), for a sun's disc.
-    double hidden_sun(std::uint32_t n) const { return sun_.after(n); }
+    double hidden_sun(std::uint32_t part, std::uint32_t n) const { return parts_[part].sun.after(n); }
 
   private:
     /// Shares found after 2^k rays that found nothing.
@@ -50,9 +54,26 @@ class SkyOpenings {
         std::vector<double> rms;
         double after(std::uint32_t n) const;
     };
+    struct ScenePart {
+        Hidden sky, sun;
+    };
+    /// Half-spaces that divide the scene: below `at` along an axis is the first child, above it the next one. A leaf
+    /// has no children; `first` is then the number of its part.
+    struct Division {
+        std::optional<std::size_t> axis = {};
+        double at = 0;
+        std::uint32_t first = 0;
+    };
+    /// A place of the search: bits of the rays that arrive outside of the openings.
+    struct Arrivals {
+        Point x;
+        std::uint64_t sky = 0, sun = 0;
+    };
+    void divide(std::uint32_t node, std::span<Arrivals> places, bool has_suns);
 
     std::vector<PortalCell> cells_;
-    Hidden sky_, sun_;
+    std::vector<Division> divisions_ = {{}};
+    std::vector<ScenePart> parts_ = {{}};
 };
 
 }  // namespace exitance

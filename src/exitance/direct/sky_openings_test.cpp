@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "exitance/base/random.hpp"
 #include "exitance/error/area_samples.hpp"
@@ -159,7 +160,7 @@ TEST(SkyOpenings, NoneAreFoundInTheOpen) {
     const Scene scene = rooms.make();
     const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
     EXPECT_TRUE(openings.cells().empty());
-    for (const std::uint32_t n : {4u, 64u, 1024u}) EXPECT_EQ(openings.hidden_sky(n), 1.0 / n);
+    for (const std::uint32_t n : {4u, 64u, 1024u}) EXPECT_EQ(openings.hidden_sky(0, n), 1.0 / n);
 }
 
 TEST(SkyOpenings, RaysIndoorsMissLessThanOneRayShows) {
@@ -167,9 +168,21 @@ TEST(SkyOpenings, RaysIndoorsMissLessThanOneRayShows) {
     const Scene indoors = closed.make();
     const SkyOpenings openings = openings_of(Stage(indoors), closed.light);
     for (const std::uint32_t n : {4u, 64u, 1024u}) {
-        EXPECT_LT(openings.hidden_sky(n), 0.03 / n) << n;
-        EXPECT_GT(openings.hidden_sky(n), 0) << n;
+        // Derived from the places of a part of the scene: 128 to 256, and a ray of one of them that is assumed to
+        // arrive.
+        const std::uint32_t part = openings.part_at({2, 2.5, 1});
+        EXPECT_LT(openings.hidden_sky(part, n), 1 / (std::sqrt(128.0) * n)) << n;
+        EXPECT_GT(openings.hidden_sky(part, n), 0) << n;
     }
+}
+
+TEST(SkyOpenings, RoomsAreInDifferentPartsOfTheScene) {
+    const Rooms rooms{.count = 9, .boxes = 10, .left = 1.9, .right = 2.2, .light = overcast()};
+    const Scene scene = rooms.make();
+    const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
+    std::set<std::uint32_t> parts;
+    for (int room = 0; room < 9; ++room) parts.insert(openings.part_at({4.0 * room + 2, 2.5, 1}));
+    EXPECT_EQ(parts.size(), 9u);
 }
 
 TEST(RayLight, LightThroughAWindowIsUnbiasedAndItsVarianceIsKnown) {

@@ -107,7 +107,7 @@ std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, co
 
 bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell, double beside) {
     const double t = dot(cell.corner - from, cell.n) / dot(direction, cell.n);
-    if (!std::isfinite(t)) return false;
+    if (!(t > 0) || !std::isfinite(t)) return false;
     const Vec3 at = from + t * direction - cell.corner;
     const double s = dot(at, cell.u) / squared_norm(cell.u), r = dot(at, cell.v) / squared_norm(cell.v);
     return std::max(std::abs(s - 0.5), std::abs(r - 0.5)) < 0.5 + beside;

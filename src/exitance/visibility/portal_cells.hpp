@@ -34,7 +34,7 @@ void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<P
 std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, const Point& x, std::size_t max,
                                            std::vector<PortalCell>& parts);
 
-/// True if a line passes through a parallelogram, or past it at a distance below the share `beside` of its size.
+/// True if a ray passes through a parallelogram, or past it at a distance below the share `beside` of its size.
 bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell, double beside = 0.5);
 
 }  // namespace exitance
