@@ -19,6 +19,8 @@ namespace {
 
 /// Places from which the sky is looked for: in the first test whether a search is worthwhile, and in the search.
 constexpr std::size_t first_places = 512, max_places = 8192;
+/// Parts into which openings near a place are cut: every ray to the sky is compared with all of them.
+constexpr std::size_t max_parts = 12;
 constexpr std::uint32_t rays_of_place = 64;  ///< Number of rays per place to the sky; as many go to all suns together.
 constexpr int few_rays = 4;               ///< Maximum number of escaping rays of a place that sees little of the sky.
 constexpr std::size_t ways_of_place = 2;  ///< Maximum number of escaping rays of a place that are followed.
@@ -282,12 +284,17 @@ double share_of(const PortalCell& cell, const Point& x, const Normal& n) {
     return std::abs(contour_sum(n, std::array{to, to + cell.u, to + cell.u + cell.v, to + cell.v}));
 }
 
-/// Returns the mean square of the share of rays n to 2n that escape, over places where rays 0 to n - 1 were blocked.
-/// One more escaping ray is assumed, so that the result is above 0.
+/// Places and a mean square of what rays miss at them.
+struct MissedSquare {
+    double mean = 0, places = 0;
+};
+
+/// Returns the mean square of the share of rays n to 2n that escape, over places where rays 0 to n - 1 were blocked,
+/// and over the places that `before` stands for.
 template <class Places, class Bits>
-double mean_square_hidden(const Places& places, std::uint32_t n, const Bits& bits_of) {
+double mean_square_hidden(const Places& places, std::uint32_t n, const Bits& bits_of, const MissedSquare& before) {
     const std::uint64_t first = (std::uint64_t{1} << n) - 1;
-    double sum = 1.0 / (1.0 * n * n), count = 1;
+    double sum = before.places * before.mean, count = before.places;
     for (const auto& place : places) {
         const std::uint64_t bits = bits_of(place);
         if ((bits & first) != 0) continue;
@@ -297,11 +304,18 @@ double mean_square_hidden(const Places& places, std::uint32_t n, const Bits& bit
     return sum / count;
 }
 
+/// Root mean squares for n = 2, 4, ... rays. At all places together one more escaping ray is assumed, so that the
+/// result is above 0. A part of them (`all` is then their result) counts with some places that miss as much as all do,
+/// since it may have few places that found nothing.
 template <class Places, class Bits>
-std::vector<double> hidden_after(const Places& places, const Bits& bits_of) {
+std::vector<double> hidden_after(const Places& places, const Bits& bits_of, const std::vector<double>* all = nullptr) {
+    constexpr double places_like_all = 16;
     std::vector<double> out;
-    for (std::uint32_t n = 2; n <= rays_of_place / 2; n *= 2)
-        out.push_back(std::min(1.0 / n, std::sqrt(mean_square_hidden(places, n, bits_of))));
+    for (std::uint32_t n = 2; n <= rays_of_place / 2; n *= 2) {
+        const double one_ray = 1.0 / n, of_all = all ? (*all)[out.size()] : one_ray;
+        const MissedSquare before{of_all * of_all, all ? places_like_all : 1};
+        out.push_back(std::min(one_ray, std::sqrt(mean_square_hidden(places, n, bits_of, before))));
+    }
     return out;
 }
 
@@ -331,7 +345,8 @@ double SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCe
     std::sort(best.begin(), best.end());
     std::vector<PortalCell> chosen, parts;
     for (const auto& [share, i] : best) chosen.push_back(cells_[i]);
-    for (const PortalCell& cell : cut_near_cells(chosen, x, PortalAim::max_targets, parts)) {
+    const std::size_t max = std::max(chosen.size(), max_parts);
+    for (const PortalCell& cell : cut_near_cells(chosen, x, max, parts)) {
         if (PortalAim::can_be_aimed_at(cell, x, n))
             out.push_back(cell);
         else
@@ -383,21 +398,27 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
         }
         arrivals.push_back({place.x, rest, place.sun});
     }
+    const auto sky_of = [](const Arrivals& p) { return p.sky; };
+    const auto sun_of = [](const Arrivals& p) { return p.sun; };
+    ScenePart all{{hidden_after(arrivals, sky_of)}, {}};
+    if (!suns.empty()) all.sun.rms = hidden_after(arrivals, sun_of);
     parts_.clear();
-    divide(0, arrivals, !suns.empty());
+    divide(0, arrivals, all);
 }
 
 /// Divides places at the median of their longest extent, down to a few hundred, of which the last ones are a part.
-void SkyOpenings::divide(std::uint32_t node, std::span<Arrivals> places, bool has_suns) {
-    constexpr std::size_t max_places = 256;  // the light that one of so many places finds is known within a sixteenth
+void SkyOpenings::divide(std::uint32_t node, std::span<Arrivals> places, const ScenePart& all) {
+    constexpr std::size_t places_of_part = 256;  // enough for a mean, few enough for a room of a house to have its own
+    const auto sky_of = [](const Arrivals& p) { return p.sky; };
+    const auto sun_of = [](const Arrivals& p) { return p.sun; };
     Box box;
     for (const Arrivals& place : places) box.add(place.x);
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
         if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
-    if (places.size() <= max_places || !(box.hi[axis] > box.lo[axis])) {
-        ScenePart part{{hidden_after(places, [](const Arrivals& p) { return p.sky; })}, {}};
-        if (has_suns) part.sun.rms = hidden_after(places, [](const Arrivals& p) { return p.sun; });
+    if (places.size() <= places_of_part || !(box.hi[axis] > box.lo[axis])) {
+        ScenePart part{{hidden_after(places, sky_of, &all.sky.rms)}, {}};
+        if (!all.sun.rms.empty()) part.sun.rms = hidden_after(places, sun_of, &all.sun.rms);
         divisions_[node] = {.first = static_cast<std::uint32_t>(parts_.size())};
         parts_.push_back(std::move(part));
         return;
@@ -408,8 +429,8 @@ void SkyOpenings::divide(std::uint32_t node, std::span<Arrivals> places, bool ha
     const auto first = static_cast<std::uint32_t>(divisions_.size());
     divisions_[node] = {axis, places[half].x[axis], first};
     divisions_.resize(first + 2);
-    divide(first, places.first(half), has_suns);
-    divide(first + 1, places.subspan(half), has_suns);
+    divide(first, places.first(half), all);
+    divide(first + 1, places.subspan(half), all);
 }
 
 std::uint32_t SkyOpenings::part_at(const Point& x) const {

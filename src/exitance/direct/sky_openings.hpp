@@ -69,7 +69,8 @@ class SkyOpenings {
         Point x;
         std::uint64_t sky = 0, sun = 0;
     };
-    void divide(std::uint32_t node, std::span<Arrivals> places, bool has_suns);
+    /// Divides the scene below a node. `all`: what rays miss at all places together.
+    void divide(std::uint32_t node, std::span<Arrivals> places, const ScenePart& all);
 
     std::vector<PortalCell> cells_;
     std::vector<Division> divisions_ = {{}};
