@@ -291,12 +291,13 @@ struct MissedSquare {
 
 /// Returns the mean square of the share of rays n to 2n that escape, over places where rays 0 to n - 1 were blocked,
 /// and over the places that `before` stands for.
-template <class Places, class Bits>
-double mean_square_hidden(const Places& places, std::uint32_t n, const Bits& bits_of, const MissedSquare& before) {
+template <class Place>
+double mean_square_hidden(std::span<Place> places, std::uint32_t n, std::uint64_t Place::*arriving,
+                          const MissedSquare& before) {
     const std::uint64_t first = (std::uint64_t{1} << n) - 1;
     double sum = before.places * before.mean, count = before.places;
-    for (const auto& place : places) {
-        const std::uint64_t bits = bits_of(place);
+    for (const Place& place : places) {
+        const std::uint64_t bits = place.*arriving;
         if ((bits & first) != 0) continue;
         const double found = std::popcount((bits >> n) & first);
         sum += found * (found - 1) / (1.0 * n * (n - 1.0)), count += 1;
@@ -307,14 +308,15 @@ double mean_square_hidden(const Places& places, std::uint32_t n, const Bits& bit
 /// Root mean squares for n = 2, 4, ... rays. At all places together one more escaping ray is assumed, so that the
 /// result is above 0. A part of them (`all` is then their result) counts with some places that miss as much as all do,
 /// since it may have few places that found nothing.
-template <class Places, class Bits>
-std::vector<double> hidden_after(const Places& places, const Bits& bits_of, const std::vector<double>* all = nullptr) {
+template <class Place>
+std::vector<double> hidden_after(std::span<Place> places, std::uint64_t Place::*arriving,
+                                 const std::vector<double>* all = nullptr) {
     constexpr double places_like_all = 16;
     std::vector<double> out;
     for (std::uint32_t n = 2; n <= rays_of_place / 2; n *= 2) {
         const double one_ray = 1.0 / n, of_all = all ? (*all)[out.size()] : one_ray;
         const MissedSquare before{of_all * of_all, all ? places_like_all : 1};
-        out.push_back(std::min(one_ray, std::sqrt(mean_square_hidden(places, n, bits_of, before))));
+        out.push_back(std::min(one_ray, std::sqrt(mean_square_hidden(places, n, arriving, before))));
     }
     return out;
 }
@@ -398,27 +400,24 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
         }
         arrivals.push_back({place.x, rest, place.sun});
     }
-    const auto sky_of = [](const Arrivals& p) { return p.sky; };
-    const auto sun_of = [](const Arrivals& p) { return p.sun; };
-    ScenePart all{{hidden_after(arrivals, sky_of)}, {}};
-    if (!suns.empty()) all.sun.rms = hidden_after(arrivals, sun_of);
+    const std::span<Arrivals> everywhere = arrivals;
+    ScenePart all{{hidden_after(everywhere, &Arrivals::sky)}, {}};
+    if (!suns.empty()) all.sun.rms = hidden_after(everywhere, &Arrivals::sun);
     parts_.clear();
-    divide(0, arrivals, all);
+    divide(0, everywhere, all);
 }
 
-/// Divides places at the median of their longest extent, down to a few hundred, of which the last ones are a part.
+/// Divides places at the median of their longest extent until there are few enough for a part.
 void SkyOpenings::divide(std::uint32_t node, std::span<Arrivals> places, const ScenePart& all) {
     constexpr std::size_t places_of_part = 256;  // enough for a mean, few enough for a room of a house to have its own
-    const auto sky_of = [](const Arrivals& p) { return p.sky; };
-    const auto sun_of = [](const Arrivals& p) { return p.sun; };
     Box box;
     for (const Arrivals& place : places) box.add(place.x);
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
         if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
     if (places.size() <= places_of_part || !(box.hi[axis] > box.lo[axis])) {
-        ScenePart part{{hidden_after(places, sky_of, &all.sky.rms)}, {}};
-        if (!all.sun.rms.empty()) part.sun.rms = hidden_after(places, sun_of, &all.sun.rms);
+        ScenePart part{{hidden_after(places, &Arrivals::sky, &all.sky.rms)}, {}};
+        if (!all.sun.rms.empty()) part.sun.rms = hidden_after(places, &Arrivals::sun, &all.sun.rms);
         divisions_[node] = {.first = static_cast<std::uint32_t>(parts_.size())};
         parts_.push_back(std::move(part));
         return;

@@ -40,7 +40,7 @@ class SkyOpenings {
     /// are cut into parts. Returns the sum of the form factors of the others, to which unaimed rays must lead.
     double choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
 
-    /// The part of the scene to which a point belongs: as far as rays miss light, its places are alike.
+    /// Number of the part of the scene that contains a point. Rays miss about as much light at all places of a part.
     std::uint32_t part_at(const Point& x) const;
     /// Root mean square of the share of the sky's light that arrives outside of all openings, at places of a part of
     /// the scene where the first n rays found nothing.
@@ -57,8 +57,8 @@ class SkyOpenings {
     struct ScenePart {
         Hidden sky, sun;
     };
-    /// Half-spaces that divide the scene: below `at` along an axis is the first child, above it the next one. A leaf
-    /// has no children; `first` is then the number of its part.
+    /// A node of the tree that divides the scene: places below `at` along the axis belong to the child `first`, others
+    /// to the next one. A leaf has no axis; `first` is then the number of its part.
     struct Division {
         std::optional<std::size_t> axis = {};
         double at = 0;

@@ -88,6 +88,14 @@ TEST(ErrorTail, IsFoundInNoiseOfEqualSize) {
     EXPECT_NEAR(planted.told(), 0.2, 0.03);
 }
 
+TEST(ErrorTail, IsTheRemainingNoiseIfThisHidesAllErrors) {
+    NoisyErrors planted(0, 0, 0.1);
+    // Four times the rays leave 0.1 / 4^0.75 in each of two measurements.
+    const double left = 0.1 * std::pow(4, -0.75) / std::sqrt(2.0);
+    EXPECT_GT(planted.told(), 0.9 * left);
+    EXPECT_LT(planted.told(), 3 * left);
+}
+
 TEST(ErrorTail, ContainsNoNoiseIfErrorsAreSmall) {
     NoisyErrors planted(0.01, 0.01, 0.03);
     const double truth = planted.true_p99();

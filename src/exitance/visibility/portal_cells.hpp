@@ -28,8 +28,8 @@ PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const
 /// pieces that are nearer than their length. Adds them to `cells`, up to `most` in total.
 void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<PortalCell>& cells);
 
-/// Cuts parallelograms near x into parts that are shorter than their distance, down to a sixteenth and to `max` parts
-/// in total, since rays are not aimed at parts that are nearer than their length: next to a narrow door, most light
+/// Cuts parallelograms near x into parts that are shorter than their distance, down to a sixteenth, and into `max`
+/// parts in total. Rays are not aimed at parts that are nearer than their length, but next to a narrow door most light
 /// comes from its nearest part. Returns `cells` or the parts, which are stored in `parts`.
 std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, const Point& x, std::size_t max,
                                            std::vector<PortalCell>& parts);

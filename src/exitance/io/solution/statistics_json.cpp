@@ -83,6 +83,7 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
         {"form_factors", s.form_factors},
         {"iterations", s.iterations},
         {"converged", s.converged},
+        {"stopped_by", name_of(s.stopped_by)},
         {"residual", s.residual},
         {"relative_error_estimate", value_or_null(s.relative_error_estimate)},
         {"relative_error_bound", value_or_null(s.relative_error_bound)},
