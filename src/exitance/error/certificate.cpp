@@ -320,7 +320,8 @@ void Certifier::Content::measure_p99(Certificate& out) {
             },
             [&](std::size_t k) -> TwoErrors& { return error[k]; }, {"certificate"});
     };
-    out.p99 = error_below(points, rays, mean_square, share, by_more_rays) / mean_reflected;
+    const double found = error_below(points, rays, mean_square, share, by_more_rays);
+    if (found > 0) out.p99 = found / mean_reflected;
 }
 
 Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,

@@ -70,7 +70,8 @@ struct Certificate {
     double estimate = 0;     ///< Relative RMS error of B (the residual, propagated by a coarse solve).
     double uncertainty = 0;  ///< Standard error of `estimate`; large if a few points have most of the error.
     double bound = 0;        ///< Upper bound of the relative RMS error, at 95% confidence.
-    /// Relative error that 99% of the area does not exceed; empty until `measure_p99` is called.
+    /// Relative error that 99% of the area does not exceed; empty until `measure_p99` is called, and if
+    /// noise hides the largest errors.
     std::optional<double> p99 = {};
     double residual = 0;  ///< Relative RMS of the residual r.
     /// Parts of the residual where `largest` is, relative RMS; 0 if the gathered light is unknown. `local`: delivered

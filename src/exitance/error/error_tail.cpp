@@ -75,7 +75,7 @@ double error_below(std::span<const WeightedError> noisy, std::span<const unsigne
     }
     const double left = std::max(0.0, all - again);
     const double rest = left > 0 ? std::sqrt(std::max(0.0, mean_square - known_square) / left) : 0;
-    return std::max(error_below(known, {rest, left}, share * all, noisy[which.back()].error), std::sqrt(noise));
+    return error_below(known, {rest, left}, share * all, noisy[which.back()].error);
 }
 
 }  // namespace exitance

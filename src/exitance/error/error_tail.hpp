@@ -40,8 +40,7 @@ using ByMoreRays = std::function<void(std::span<const std::size_t> which, unsign
 /// noise. The places with the largest apparent errors are measured again with many more rays, and the remaining noise
 /// is subtracted from their squares. The mean square of all other errors is what these leave of `mean_square`, the
 /// noise-free mean square of all errors. The others are assumed not to exceed the smallest apparent error that was
-/// measured again. Weights sum to about 1. The result is at least the noise that remains at such a place: smaller
-/// errors are not seen.
+/// measured again. Weights sum to about 1. The result is 0 if noise hides the largest errors.
 ///
 /// rays  rays of each place so far. A quarter of their sum is cast again, but at least twice the rays of the repeated
 /// places.
