@@ -50,7 +50,7 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
     out.colour = (1 / out.power) * light;
     const double length = norm(out.normal);
     out.normal_spread = std::sqrt(std::max(0.0, 1 - length * length));
-    constexpr double min_mean_normal = 1e-6;
+    constexpr double min_mean_normal = 1e-6;  // derived from rounding: the direction of a shorter mean is inaccurate
     out.axis = length > min_mean_normal ? out.normal / length : plane_of(sources.front()).n;
     for (const Source& s : sources) {
         const std::span<const Point> corners = occluders.corners(s.name.piece);

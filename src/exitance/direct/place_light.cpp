@@ -43,7 +43,7 @@ PlaceLight::~PlaceLight() = default;
 void PlaceLight::add_mirrored(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                               Estimate& out) const {
     if (!mirrored_) return;
-    // If no error is allowed: about the accuracy of closed forms through panes (glazed_form_factor).
+    // If no error is allowed. Derived from the accuracy of closed forms through panes (glazed_form_factor).
     constexpr LightAccuracy finest{.relative = 1e-3};
     const LightAccuracy& required = accuracy.relative > 0 || accuracy.absolute > 0 ? accuracy : finest;
     const RegionId behind = direct_->occluders().scene().behind(own);

@@ -144,8 +144,8 @@ class PossibleSources::Divider {
         Point middle = from[0];
         for (const Point& p : from) middle = middle + (p - from[0]) / static_cast<double>(from.size());
         constexpr std::size_t max_tested = 12;
-        // relative to the scene's size; nearer points may be counted as lying in the plane
-        constexpr double apart = 4e-6;
+        // Derived from coplanar_share: nearer points may be counted as lying in the plane.
+        constexpr double apart = 4 * coplanar_share;
         const double slack = apart * occluders_.scene().size();
         std::size_t tested = 0;
         bool hidden = false;

@@ -105,7 +105,9 @@ class RayLight::RayMaker {
         weight *= emitter.radiance.towards(from, y);
         if (!(weight > 0)) return;
         const bool is_window = emitter.sky == DirectLight::Emitter::Sky::window;
-        constexpr double before = 1e-5;  // share of the scene's size: rays end in front of a window's pane
+        // Rays end in front of a window's pane. Share of the scene's size, derived from single precision, in which rays
+        // are traced: 170 roundings of a coordinate.
+        constexpr double before = 1e-5;
         const double length = norm(d);
         const double way = direct.looks_far(source.emitter) ? std::min(1.0, reach_ / length)
                            : is_window                      ? std::max(0.5, 1 - before * light_.size_ / length)
@@ -168,7 +170,9 @@ void RayLight::continue_through_windows(Workspace& room) const {
     room.onwards_.clear(), room.onwards_from_.clear(), room.onwards_to_.clear();
     for (std::size_t i = 0; i < room.rays_.size(); ++i) {
         if (room.blocked_[i] || room.rays_[i].window.is_none()) continue;
-        constexpr double step = 3e-5, beyond_all = 2;  // both as shares of the scene's size
+        // Shares of the scene's size. The step is derived from single precision, in which rays are traced: it is wider
+        // than the distance from the pane at which the first part of the ray ended.
+        constexpr double step = 3e-5, beyond_all = 2;
         const Point& end = room.to_[i].at;
         const Vec3 w = normalized(end - room.from_[i].at);
         room.onwards_.push_back(i);

@@ -10,6 +10,11 @@
 namespace exitance {
 namespace {
 
+/// Errors of n rays fall as n^(-error_exponent), variances with twice that power. Derived from points of a Sobol
+/// sequence, for light that is cut by edges.
+constexpr double error_exponent = 0.75;
+/// Power of a part's variance with which its number of rays grows. Derived from fewest rays for a sum of variances.
+constexpr double power_of_variance = 1 / (1 + 2 * error_exponent);
 constexpr std::uint32_t fastest_growth = 16;  ///< Limit per round, since a variance from few rays is uncertain.
 
 bool is_grey(const Spectrum& s) {
@@ -34,11 +39,17 @@ Spectrum RayLight::Estimate::standard_error() const {
 }
 
 double RayLight::rays_for(double relative_error) {
-    return std::pow(half_hidden / relative_error, 4.0 / 3);
+    return std::pow(half_hidden / relative_error, 1 / error_exponent);
+}
+
+double RayLight::rays_for(const LightAccuracy& accuracy, double open) {
+    // Derived from 32-bit counts of rays: a smaller error requires more rays than they hold.
+    constexpr double min_error = 1e-9;
+    return rays_for(std::max(accuracy.allowed(open) / open, min_error));
 }
 
 double RayLight::error_of(double rays) {
-    return half_hidden * std::pow(rays, -0.75);
+    return half_hidden * std::pow(rays, -error_exponent);
 }
 
 RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
@@ -60,11 +71,11 @@ RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId o
     for (bool grows = true; grows;) {
         trace(room);
         out = Estimate();
-        double rates = 0;  // sum of c^(2/5), c the variance of one ray
+        double rates = 0;  // sum of c^(2/5), c the variance of one ray; 2/5 is `power_of_variance`
         for (const Part& part : room.parts_) {
             const double variance = this->variance(part);
             out.irradiance += part.light(), out.variance += variance, out.rays += part.rays;
-            rates += std::pow(variance * std::pow(part.rays, 1.5), 0.4);
+            rates += std::pow(variance * std::pow(part.rays, 2 * error_exponent), power_of_variance);
         }
         // Less than the light found by a standard deviation: light that is overestimated must not end the search.
         const double least = std::max(mean(out.irradiance) - std::sqrt(out.variance), min_share * open);
@@ -73,9 +84,10 @@ RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId o
         if (out.variance <= limit || out.rays >= accuracy.max_rays) break;
         // The variance sum of c_i n_i^(-3/2) is reached with fewest rays by n_i in proportion to c_i^(2/5).
         grows = false;
-        const double scale = std::pow(rates / limit, 2.0 / 3);
+        const double scale = std::pow(rates / limit, 0.5 / error_exponent);
         for (Part& part : room.parts_) {
-            const double wanted = scale * std::pow(variance(part) * std::pow(part.rays, 1.5), 0.4);
+            const double wanted =
+                scale * std::pow(variance(part) * std::pow(part.rays, 2 * error_exponent), power_of_variance);
             const std::uint32_t rays = power_of_two(wanted, 1, std::min(fastest_growth * part.rays, accuracy.max_rays));
             if (rays <= part.rays) continue;
             add_rays(start, part, rays, room);
@@ -111,7 +123,7 @@ double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const L
     if (std::any_of(room.parts_.begin(), room.parts_.end(),
                     [](const Part& part) { return part.kind == Part::Kind::openings; }))
         open = light_through_openings(room);
-    const double rays = open > 0 ? rays_for(std::max(accuracy.allowed(open) / open, 1e-9)) : 0;
+    const double rays = open > 0 ? rays_for(accuracy, open) : 0;
     return work_of_place + std::clamp(rays, 1.0 * min_pilot, 1.0 * accuracy.max_rays);
 }
 

@@ -77,12 +77,15 @@ class RayLight {
     ElementEstimate on_element(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed,
                                std::uint32_t rays, Workspace& room) const;
 
-    /// Light that varies between 0 and U has a variance of at most U^2 / 4, typically half of that.
+    /// Variance of light that varies between 0 and U, as a share of U^2. Derived from its maximum, 1 / 4, of which half
+    /// is typical.
     static constexpr double typical_variance = 0.125;
 
     /// Returns the number of rays after which stratified rays reach an error, relative to the unoccluded light of a
     /// source that is half hidden.
     static double rays_for(double relative_error);
+    /// Like rays_for(), for light whose part without occlusion is `open` > 0, W/m^2.
+    static double rays_for(const LightAccuracy& accuracy, double open);
     /// Returns the random key of a place.
     static std::uint64_t key_of(const Point& x, RegionId own);
     /// Returns the inverse of rays_for().

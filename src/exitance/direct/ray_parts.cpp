@@ -174,8 +174,7 @@ double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, W
     double open = 0;
     for (const Part& part : room.parts_) open += mean(part.open);
     if (!(open > 0)) return 0;
-    const double pilot =
-        std::clamp(0.5 * rays_for(std::max(accuracy.allowed(open) / open, 1e-9)), 1.0 * min_pilot, 1.0 * max_pilot);
+    const double pilot = std::clamp(0.5 * rays_for(accuracy, open), 1.0 * min_pilot, 1.0 * max_pilot);
     for (Part& part : room.parts_)
         part.block = power_of_two(pilot * mean(part.open) / open, min_rays_of_part, max_pilot) / 4;
     return open;

@@ -32,8 +32,8 @@ constexpr unsigned directions_of_point = 64;  ///< Directions that measure how m
 /// horizon. Bisections then refine the position of the rim, and that of the opening along a ray.
 constexpr unsigned azimuths = 48, steps_of_azimuth = 24, halvings = 16;
 
-/// A point at which at least this share of all directions leads to the sky is at an opening. In the plane of a window
-/// above a ground the share is a quarter. Half of that marks a point just indoors.
+/// A point at which at least this share of all directions leads to the sky is at an opening. Derived from the plane of
+/// a window above a ground, where the share is a quarter: half of that marks a point just indoors.
 constexpr double seen_at_opening = 1.0 / 8;
 
 /// Points of a rim that are farther away than this multiple of the distance of the nearest quarter of them belong to
@@ -234,7 +234,9 @@ std::vector<Vec3> SkySearch::rim(const Point& from, const Frame& frame, const Is
 /// farthest  points at more than this multiple of the distance of the nearest quarter are ignored
 PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim, double farthest) {
     constexpr std::size_t fewest = 12;  // points from which a rectangle can be found
-    constexpr double edge_on = 1e-3;    // cosine
+    // Cosine below which points are too near the horizon to be projected; derived from the distance of such points, a
+    // thousand times that of the plane.
+    constexpr double edge_on = 1e-3;
     if (rim.size() < fewest) return {};
     std::vector<double> distances;
     for (const Vec3& p : rim) distances.push_back(norm(p));

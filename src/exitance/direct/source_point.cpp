@@ -63,7 +63,8 @@ SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double
     double farthest = 0;
     for (const Point& p : corners) farthest = std::max(farthest, squared_norm(p - x));
     const double nearest = nearest_squared(corners, n, x);
-    // Relative to the farthest: x is in the polygon, so that directions to it are undefined.
+    // Relative to the farthest: x is in the polygon, so that directions to it are undefined. The square of
+    // coplanar_share; derived from rounding like that.
     constexpr double min_squared_ratio = 1e-12;
     if (farthest <= max_distance_ratio * max_distance_ratio * nearest || nearest <= min_squared_ratio * farthest) {
         for (std::size_t i = 2; i < corners.size(); ++i)
@@ -75,7 +76,8 @@ SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double
     for (std::size_t i = 2; i < corners.size(); ++i) {
         const Vec3 b = normalized(corners[i - 1] - x), c = normalized(corners[i] - x);
         const double seen = 2 * std::atan2(std::abs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
-        constexpr double min_solid_angle = 1e-9;  // sr; smaller triangles have inaccurate angles
+        // sr; derived from double precision, in which angles of smaller triangles have relative errors above 1e-7
+        constexpr double min_solid_angle = 1e-9;
         if (!(seen > min_solid_angle)) continue;
         const double angle = angle_at(a, b, c);
         triangles_.push_back({a, b, c, angle, std::sin(angle), std::cos(angle), seen});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exitance/base/check.hpp"
+#include "exitance/base/limits.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/form_factors/quad_lanes.hpp"
 
@@ -133,7 +134,7 @@ double EdgeTerms::sum() {
     return call_for_four([&]() EXITANCE_INLINE_LAMBDA {
         four::Real total{};
         for (std::size_t k = 0; k < count_; k += four::lanes) {
-            const four::Real sine = max(sqrt(four::load(&squared_sine_[k])), four::Real{} + 1e-200);
+            const four::Real sine = max(sqrt(four::load(&squared_sine_[k])), four::Real{} + min_length_of_product);
             total -= angle_over_sine(sine, four::load(&cosine_[k])) * four::load(&share_[k]);
         }
         return ((total[0] + total[1]) + (total[2] + total[3])) * (1 / (2 * pi));

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "exitance/base/four.hpp"
+#include "exitance/base/limits.hpp"
 
 // Form factors from a point to quads, one quad per SIMD lane: the rules of point_to_polygon_batch.hpp, for kernels that
 // have quads in registers.
@@ -34,7 +35,7 @@ EXITANCE_INLINE Real contour(const Direction& n, const VecOf<Real> (&r)[4]) {
     for (int i = 0; i < 4; ++i) {
         const VecOf<Real>&a = r[i], &b = r[(i + 1) & 3], c = cross(a, b - a);
         // Edges of length 0, and edges that point at x, have c = 0.
-        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
+        const Real sine = max(sqrt(dot(c, c)), Real{} + min_length_of_product);
         sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
     }
     return sum * (1 / (2 * pi));

@@ -23,12 +23,14 @@ CutLine across_longest_extent(const ElementTree& tree, ElementId e) {
 
 IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf, Cut only) {
     if (tree.is_cell(leaf)) {
-        tree.split_by_line(leaf, across_longest_extent(tree, leaf), 0);
+        tree.split_by_line(leaf, across_longest_extent(tree, leaf));
         return tree.children(leaf);
     }
     const Patch& patch = tree.patch(leaf);
     const double a = norm(patch.a), b = norm(patch.b);
-    constexpr double long_ratio = 1.5 * (1 + 1e-6);  // 3 : 2 counts as not longer, however coordinates are rounded
+    // Derived from the best shape: halved below 3 : 2, a parallelogram would be narrower than before. A ratio of 3 : 2
+    // counts as not longer, however coordinates are rounded.
+    constexpr double long_ratio = 1.5 * (1 + 1e-6);
     tree.split(leaf, only != Cut::none     ? only
                      : patch.is_triangle() ? Cut::both
                      : a > long_ratio * b  ? Cut::u

@@ -153,7 +153,8 @@ std::uint8_t kind_of(const Vec3& n) {
     const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto third = [&](std::size_t other) {
-        return std::min(2, static_cast<int>(1.5 * (n[other] / size[axis] + 1)));
+        const double from_0_to_2 = n[other] / size[axis] + 1;
+        return std::min(2, static_cast<int>(1.5 * from_0_to_2));  // derived from three squares over that range
     };
     const int face = 2 * static_cast<int>(axis) + (n[axis] > 0);
     return static_cast<std::uint8_t>(9 * face + 3 * third((axis + 1) % 3) + third((axis + 2) % 3));

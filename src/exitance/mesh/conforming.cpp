@@ -81,7 +81,9 @@ void PlaneNodes::find_vertices(std::span<const ElementId> leaves, std::span<cons
             box.add(places_.back());
         }
     }
-    constexpr double rounding = 1e-9;  // share of the surface's size and of its distance from the origin
+    // Share of the surface's size and of its distance from the origin; derived from double precision, with a margin for
+    // cut points.
+    constexpr double rounding = 1e-9;
     tolerance_ = rounding * (norm(box.hi - box.lo) + std::max(norm(box.hi - Point{}), norm(box.lo - Point{})));
     // At the ends of a line, the corners of both sides share a node. So that a function can be discontinuous across the
     // line, it gets a vertex in its middle, too.
@@ -220,7 +222,7 @@ void PlaneNodes::insert_hanging_vertices() {
 void PlaneNodes::join_corners(std::span<const ContactLines::Line> jumps) {
     for (Polygon& p : polygons_) p.first_slot = slot_count_, slot_count_ += static_cast<std::uint32_t>(p.vertex.size());
     if (polygons_.empty()) return;
-    // a factor above 1, since computed cut points are less accurate than rounding
+    // Derived from ContactLines, whose tolerance is 1e-7 of the scene's size: cut points are that accurate.
     constexpr double jump_tolerance_factor = 1e3;
     const Patch& patch = tree_.patch(polygons_[0].leaf);
     const OnJump jumps_at(jumps, patch.normal(), patch.origin, jump_tolerance_factor * tolerance_);
@@ -389,7 +391,7 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
         for (std::size_t k = 0; k < found.size(); ++k)
             if (!leaves[first + k].empty() && found[k].leaf.empty()) return {};
         if (first == 0 && count > 0) {
-            // Later planes may need more splits; reserved memory that is not used costs nothing.
+            // Later planes may need more splits. Derived from memory: what is reserved and not used costs nothing.
             constexpr double margin = 1.1;
             reserve(found, left > count ? margin * static_cast<double>(left) / static_cast<double>(count) : 1, tree,
                     out);

@@ -15,7 +15,7 @@ namespace {
 /// the border.
 bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
     constexpr double min_share = 1e-5;  // share of the element's area that each part must have
-    constexpr double parallel = 1e-6;   // deviation from parallel, as a share of the element
+    constexpr double parallel = 1e-6;   // deviation, as a share of the element; derived from the rounding of files
     if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
         for (const auto& [kind, along, across] :
              {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
@@ -103,7 +103,7 @@ class ContactCutter {
 ElementId copy_leaf(const ElementTree& tree, ElementId e, ElementTree& out) {
     if (!tree.is_cell(e)) return out.add_root(tree.region(e), tree.patch(e));
     const ElementId parent = tree.parent(e);
-    const ElementId first = out.split_by_line(copy_leaf(tree, parent, out), tree.line(parent), 0);
+    const ElementId first = out.split_by_line(copy_leaf(tree, parent, out), tree.line(parent));
     return ElementId(first.value + e.value - tree.children(parent).front().value);
 }
 
@@ -133,7 +133,7 @@ class FoundCuts {
             for (auto made = begin; made != end; ++made) {
                 const ElementId e = made->element == 0 ? elements[i] : ElementId(first + made->element - 1);
                 if (made->kind == Cut::line)
-                    tree.split_by_line(e, made->line, 0);
+                    tree.split_by_line(e, made->line);
                 else
                     tree.split(e, made->kind, made->line.offset);
             }

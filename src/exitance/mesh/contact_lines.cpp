@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "exitance/base/limits.hpp"
+
 namespace exitance {
 namespace {
 
@@ -16,7 +18,7 @@ bool hovers(double hp, double hq, double tolerance, double gap) {
 /// discontinuity ends where this part ends. Steep edges meet the plane only in a point and are skipped.
 void contact_of_tilted_edge(const Point& p, const Point& q, const Plane& plane, double tolerance,
                             std::vector<Segment>& out) {
-    constexpr double max_sine = 0.01;  // sine; at this slope the part is 1e-4 of the scene's size long
+    constexpr double max_sine = 0.01;  // derived from a part that is 2e-5 of the scene's size long at this slope
     const double hp = plane.signed_distance(p), rise = plane.signed_distance(q) - hp;
     if (std::abs(rise) > max_sine * norm(q - p) || rise == 0) return;
     const double at_low = (-tolerance - hp) / rise, at_high = (tolerance - hp) / rise;
@@ -128,7 +130,7 @@ bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
     for (std::size_t i = 0; i < domain.size(); ++i) {
         const Vec2 p = domain[i], edge = domain[(i + 1) % domain.size()] - p;
         const double at_a = cross(edge, a - p), rate = cross(edge, d);  // inside where at_a + t rate >= 0
-        if (std::abs(rate) < 1e-14) {
+        if (std::abs(rate) < rounded_sine) {
             if (at_a < 0) return false;
             continue;
         }
@@ -178,7 +180,7 @@ bool leads_away(const ElementTree& tree, ElementId e, const Region& region, cons
 
 }  // namespace
 
-ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7 * scene.size()) {
+ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(contact_share * scene.size()) {
     std::vector<Box> boxes(scene.surfaces().size());
     for (SurfaceId s : scene.surfaces().ids())
         for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);

@@ -11,6 +11,10 @@
 
 namespace exitance {
 
+/// Distance up to which surfaces touch each other and regions are in one plane, as a share of the scene's size.
+/// Derived from the rounding of coordinates in files with seven digits.
+constexpr double contact_share = 1e-7;
+
 /// Lines along which other polygons touch a surface or intersect it. Light is discontinuous across such a line: dark
 /// under a box on the floor and lit next to it, or different on the two sides of a pane. No polynomial approximates
 /// that, so elements are split along these lines.

@@ -355,7 +355,7 @@ TEST(ContactLines, LimitsOfHeightShrinkWithTheElement) {
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {64, 0, 0}, {0, 64, 0}, Patch::Shape::parallelogram});
     const double root_half = std::sqrt(0.5);
-    tree.split_by_line(ElementId(0), {{root_half, -root_half}, 0}, 0);
+    tree.split_by_line(ElementId(0), {{root_half, -root_half}, 0});
     const ElementId half = tree.leaf_at(ElementId(0), {10. / 64, 2. / 64}).element;
     ASSERT_TRUE(tree.is_cell(half));
     std::vector<ContactLines::Line> lines = contacts.around(tree, half, tree.area(half));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/shared_results.hpp"
 
@@ -9,6 +10,9 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t max_searched_roots = 8;
+/// Distance from a border within which a point may be on either side of it, as a share of the extent of all roots.
+/// Derived from double precision.
+constexpr double rounding = 1e-9;
 
 /// Index of the cell of a coordinate along an axis with `count` cells; coordinates outside are clamped.
 std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count) {
@@ -126,7 +130,7 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     grid.s_scale = width > 0 ? grid.columns / width : 0, grid.t_scale = height > 0 ? grid.rows / height : 0;
 
     // Count, then fill. Boxes are enlarged slightly, so that points on borders find the roots of both sides.
-    const double margin = 1e-9 * all.diagonal();
+    const double margin = rounding * all.diagonal();
     const auto for_cells = [&](const Root& root, const auto& body) {
         if (!has_area(root)) return;  // no point is in it
         const Box box = box_of(root);
@@ -150,7 +154,8 @@ ElementLocator::Nearest ElementLocator::nearest_root(RegionId region, const Poin
     if (g >= 0) {
         const Grid& grid = grids_[static_cast<std::size_t>(g)];
         nearest.look_at(grid.cell(grid.row(p[grid.t]) * grid.columns + grid.column(p[grid.s])), p);
-        const double margin = 1e-9 * (1 / std::max(grid.s_scale, 1e-300) + 1 / std::max(grid.t_scale, 1e-300));
+        const double margin =
+            rounding * (1 / std::max(grid.s_scale, min_divisor) + 1 / std::max(grid.t_scale, min_divisor));
         // The point is outside all roots of its cell by more than rounding. This is rare, and any root may be the
         // nearest.
         if (!nearest.root || !(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);

@@ -184,7 +184,8 @@ ElementId ElementTree::split_by_line(ElementId leaf, CutLine line, double least)
 
 ElementId ElementTree::split_fan(ElementId leaf, const Fan& fan) {
     EXI_CHECK(is_leaf(leaf) && fan.border.size() >= 2);
-    constexpr double min_area = 1e-12;  // smallest area of a triangle of the fan, as a share of the element's
+    // Smallest area of a triangle of the fan, as a share of the element's; derived from double precision.
+    constexpr double min_area = 1e-12;
     for (std::size_t i = 1; i < fan.border.size(); ++i)
         if (!(cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) > min_area)) return ElementId();
     if (!is_stored(leaf)) store_triangles();

@@ -85,7 +85,7 @@ class ElementTree {
     ElementId split(ElementId leaf, Cut kind, double ratio = 0.5);
     /// Splits a leaf along a line into two cells, the first side first. Returns the first child; returns none, and does
     /// nothing, if one side has less than `least` of the leaf's area.
-    ElementId split_by_line(ElementId leaf, CutLine line, double least = 1e-6);
+    ElementId split_by_line(ElementId leaf, CutLine line, double least = 0);
 
     /// Splits a leaf into the triangles of a fan, which must cover it. Returns the first child; returns none, and does
     /// nothing, if a triangle has no area.

@@ -53,7 +53,7 @@ void archive(ArchiveReader& a, ElementTree& tree) {
         for (; tree.size() < size && next < cuts.size(); ++next) {
             const CutMade& cut = cuts[next];
             if (cut.kind == Cut::line) {
-                tree.split_by_line(cut.element, cut.line, 0);
+                tree.split_by_line(cut.element, cut.line);
             } else if (cut.kind == Cut::fan) {
                 const auto border = fan + 1;
                 fan = border + cut.fan_size;

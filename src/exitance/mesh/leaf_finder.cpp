@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 
 namespace exitance {
@@ -86,7 +87,7 @@ std::uint32_t LeafFinder::deepest_around(std::span<const Node> nodes, std::uint3
         const double height = dot(node.normal, middle) - node.offset;
         const double reach = std::abs(node.normal.x) * half.x + std::abs(node.normal.y) * half.y;
         // Most cuts are along a side of the box and leave it whole; the far sides of the box belong to its neighbours.
-        const double rounding = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));
+        const double rounding = zero_sine * (std::abs(node.normal.x) + std::abs(node.normal.y));
         if (std::abs(height) < reach - rounding) break;
         part = node.part[height > 0 ? 1 : 0];
     }

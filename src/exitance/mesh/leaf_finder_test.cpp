@@ -19,7 +19,7 @@ ElementTree cut_at_random(int cuts, std::uint64_t seed, bool many = false) {
         const ElementId leaf = leaves[random.bits() % leaves.size()];
         if (tree.is_cell(leaf) || i % 7 == 3) {
             const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
-            tree.split_by_line(leaf, {n, dot(n, tree.centre(leaf))}, 0);
+            tree.split_by_line(leaf, {n, dot(n, tree.centre(leaf))});
         } else {
             tree.split(leaf, static_cast<Cut>(1 + random.bits() % 3), 0.2 + 0.6 * random.uniform());
         }

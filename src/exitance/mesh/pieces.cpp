@@ -12,9 +12,10 @@
 namespace exitance {
 namespace {
 
-/// Lengths below this share of the polygon's extent are rounding errors. Well above the precision of scene files.
+/// Lengths below this share of the polygon's extent are rounding errors. Derived from double precision.
 constexpr double same_place = 1e-9;
-/// Maximum deviation of corners from a parallelogram, as a share of its shortest side.
+/// Maximum deviation of corners from a parallelogram, as a share of its shortest side. Derived from files with six
+/// digits, whose sides may be a hundredth of the scene's size.
 constexpr double max_parallelogram_gap = 1e-4;
 /// Minimum ratio of height to longest side of a triangle that is split off next to a parallelogram.
 constexpr double sliver = 0.15;
@@ -37,7 +38,7 @@ std::optional<Patch> as_parallelogram(std::span<const Point> p) {
     for (std::size_t i = 0; i < 3; ++i) shortest = std::min(shortest, norm(p[i + 1] - p[i]));
     if (norm(gap) > max_parallelogram_gap * shortest) return std::nullopt;
     const Vec3 a = 0.5 * ((p[1] - p[0]) + (p[2] - p[3])), b = 0.5 * ((p[3] - p[0]) + (p[2] - p[1]));
-    return Patch{p[0] - 0.25 * gap, a, b, Patch::Shape::parallelogram};
+    return Patch{p[0] - gap / 4, a, b, Patch::Shape::parallelogram};
 }
 
 /// Returns a convex quadrilateral with two parallel sides as a parallelogram on the shorter one and a triangle; empty
@@ -100,7 +101,7 @@ struct LongestEdgeFrame {
             for (std::size_t i = 0; i < loop.size(); ++i) {
                 const Vec3 d = loop[(i + 1) % loop.size()] - loop[i];
                 // The margin makes the first of several nearly equal edges win, independent of rounding.
-                if (squared_norm(d) > longest * (1 + 1e-9)) longest = squared_norm(d), u = d;
+                if (squared_norm(d) > longest * (1 + same_place)) longest = squared_norm(d), u = d;
             }
         u = normalized(u - dot(u, n) * n);
         v = cross(n, u);

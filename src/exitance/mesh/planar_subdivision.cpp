@@ -259,7 +259,8 @@ class DelaunayRefinement {
 
     /// Returns whether the triangle has a small angle that is not between two labelled edges.
     bool is_sharp(Handle face) const {
-        // sine of 20.7 degrees, the smallest angle: shortest edge over twice the circumradius
+        // Sine of 20.7 degrees, the smallest angle: shortest edge over twice the circumradius. Derived from Ruppert's
+        // refinement, which ends for angles up to this one.
         constexpr double sine = 0.3535;
         double length[3];
         for (int i = 0; i < 3; ++i) {
@@ -359,7 +360,7 @@ LabelledTriangles refined_triangles(const LabelledTriangles& coarse) {
     if (coarse.corners.empty()) return coarse;
     try {
         LabelledTriangles out = DelaunayRefinement(coarse).run();
-        constexpr double max_area_error = 1e-10;
+        constexpr double max_area_error = 1e-10;  // derived from double precision: a missing triangle is larger
         if (std::abs(area_of(out) - area_of(coarse)) <= max_area_error * area_of(coarse)) return out;
     } catch (const std::exception&) {
         // a CGAL assertion failed: return the input

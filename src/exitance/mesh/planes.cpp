@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <tuple>
 
+#include "exitance/mesh/contact_lines.hpp"
 #include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
 
 Field<RegionId, std::uint32_t> plane_of_regions(const Scene& scene) {
-    constexpr double same_direction = 1e-7, same_plane = 1e-7;  // the second one as a share of the scene's size
     std::vector<Point> normals;
     for (const Region& region : scene.regions()) normals.push_back(Point{} + region.plane.n);
-    const std::vector<std::uint32_t> direction = weld(normals, same_direction);
+    const std::vector<std::uint32_t> direction = weld(normals, contact_share);
     std::vector<RegionId> order(scene.regions().ids().begin(), scene.regions().ids().end());
     const auto key = [&](RegionId r) {
         const Region& region = scene.regions()[r];
@@ -23,7 +23,7 @@ Field<RegionId, std::uint32_t> plane_of_regions(const Scene& scene) {
         const bool apart = i == 0 || direction[order[i].value] != direction[order[i - 1].value] ||
                            scene.regions()[order[i]].level != scene.regions()[order[i - 1]].level ||
                            scene.regions()[order[i]].plane.offset - scene.regions()[order[i - 1]].plane.offset >
-                               same_plane * scene.size();
+                               contact_share * scene.size();
         first[order[i].value] = apart ? order[i].value : first[order[i - 1].value];
     }
     Field<RegionId, std::uint32_t> out;

@@ -4,6 +4,7 @@
 #include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/mesh/contact_lines.hpp"
 
 namespace exitance {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 /// Returns whether a length exceeds a limit by more than the rounding of coordinates in files. Scenes whose lengths are
 /// multiples of the mesh size are then split the same way in every orientation.
 bool exceeds(double length, double limit) {
-    constexpr double rounding = 1e-6;  // allowed excess, as a share of the limit
+    constexpr double rounding = 1e-6;  // allowed excess, as a share of the limit; derived from files with six digits
     return length > (1 + rounding) * limit;
 }
 
@@ -143,7 +144,7 @@ double rise_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& pla
     const Surface& surface = scene.surfaces()[s];
     const std::span<const Point> outline = scene.outline(s);
     if (std::abs(dot(surface.normal, p - outline[0])) > tolerance) return 0;
-    constexpr double rounding = 1e-6;  // tolerance for the rounding of normals at right angles
+    constexpr double rounding = 1e-6;  // derived from files with six digits: normals at right angles
     const double rise = std::min(1.0, (1 + rounding) * (1 - dot(surface.normal, plane.n)));
     const bool in_front = std::any_of(outline.begin(), outline.end(),
                                       [&](const Point& q) { return plane.signed_distance(q) > 4 * tolerance; });
@@ -162,14 +163,16 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
     for (SurfaceId s : scene.surfaces().ids())
         for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
     const Bvh bvh(boxes);
-    const double tolerance = 1e-7 * scene.size();
+    // Derived from scenes: with the middle, two places at which regular objects rarely end.
+    constexpr std::array places_on_border{0.5, 0.18, 0.83};
+    const double tolerance = contact_share * scene.size();
     const auto rise_beside = [&](const Piece& piece, int border) {
         const Patch& patch = piece.patch;
         const Plane& plane = scene.regions()[piece.region].plane;
         const Point inside = patch.centre();
         const Point a = patch.corner(border), b = patch.corner((border + 1) % patch.corner_count());
         double rise = 0;
-        for (double t : {0.5, 0.18, 0.83}) {
+        for (double t : places_on_border) {
             const Point p = a + t * (b - a);
             Box box;
             box.add(p - Vec3{tolerance, tolerance, tolerance});
@@ -226,9 +229,11 @@ std::size_t predict_elements(const std::vector<Piece>& pieces, double edge) {
 double edge_for_elements(const std::vector<Piece>& pieces, std::size_t count) {
     double longest = 0;
     for (const auto& [region, patch] : pieces) longest = std::max({longest, norm(patch.a), norm(patch.b)});
-    double edge = 1.0001 * longest;
-    // Each step makes about sqrt(2) times as many elements.
-    while (predict_elements(pieces, edge) < count) edge *= 0.84;
+    // The first edge is a little longer than the longest extent; derived from rounding. Each step makes about sqrt(2)
+    // times as many elements.
+    constexpr double above_one = 1.0001, step = 0.84;
+    double edge = above_one * longest;
+    while (predict_elements(pieces, edge) < count) edge *= step;
     return edge;
 }
 

@@ -24,7 +24,7 @@ Locator::Locator(const Scene& scene) : scene_(&scene), tolerance_(1e-5 * scene.s
 
 void Locator::look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& best) const {
     const Surface& surface = scene_->surfaces()[s];
-    if (!(dot(surface.normal, n) > 0.999)) return;
+    if (!(dot(surface.normal, n) > parallel_cosine)) return;
     const std::span<const Point> outline = scene_->outline(s);
     const double height = dot(surface.normal, p - outline[0]);
     if (!(std::abs(height) <= tolerance_)) return;

@@ -29,7 +29,7 @@ Field<AnyId, AnyId> pair_up(std::size_t count, const Key& key, const NormalOf& n
     for (std::size_t i = 0; i < count; ++i) {
         keys[i] = key(AnyId(i));
         for (std::uint32_t e = chains.first(keys[i]); e != HashChains::end; e = chains.next(e)) {
-            if (keys[e] != keys[i] || dot(normal(AnyId(e)), normal(AnyId(i))) > -0.999) continue;
+            if (keys[e] != keys[i] || dot(normal(AnyId(e)), normal(AnyId(i))) > -parallel_cosine) continue;
             out.resize(count);
             out[AnyId(i)] = AnyId(e), out[AnyId(e)] = AnyId(i);
             break;

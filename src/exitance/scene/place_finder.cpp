@@ -38,8 +38,6 @@ struct PlaceFinder::Sector {
 
 namespace {
 
-/// Cosine between normals of planes that count as parallel, as for a Locator.
-constexpr double parallel_cosine = 0.999;
 constexpr double min_blade_angle = 1e-3;  ///< Radians; blades at a smaller angle count as one.
 /// Relative to the scene's diameter; rays start at the same distance from their surfaces.
 constexpr double step_share = 0x1p-20;

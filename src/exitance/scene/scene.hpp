@@ -92,6 +92,10 @@ constexpr std::uint8_t max_stacked = 7;
 /// Faces closer than this count as coplanar, as a share of the scene's size and of the smaller face's box.
 constexpr double coplanar_share = 1e-6, coplanar_share_of_face = 1e-3;
 
+/// Cosine of the angle between normals, 2.6 degrees, from which faces that are near to each other count as parallel.
+/// Derived from coplanar_share_of_face: faces that are that flat on each other differ by a tenth of a degree.
+constexpr double parallel_cosine = 0.999;
+
 /// A diagnostic about an input for the user, printed by `exitance check`.
 struct Finding {
     enum class Kind { error, warning, repair };

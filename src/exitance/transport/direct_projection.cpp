@@ -15,7 +15,8 @@
 namespace exitance {
 namespace {
 
-constexpr double time_for_rays = 0.2;  ///< Seconds after a stop request during which rays are still cast.
+/// Seconds after a stop request during which rays are still cast. Derived from the delay that users hardly notice.
+constexpr double time_for_rays = 0.2;
 
 /// Sum of light_weight() times E_dir over the leaves' area, W.
 double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,

@@ -37,7 +37,8 @@ Normal hemicube_axis(const Patch& patch, const Normal& n) {
         const double s = dot(edges[k], u), t = dot(edges[k], v);
         x += s * s, y += t * t, both += s * t;
     }
-    // below it, the patch has no principal axis: it is equally long in all directions
+    // Below it, the patch has no principal axis: it is equally long in all directions. Derived from the rounding of
+    // coordinates in files.
     constexpr double rounding = 1e-6;
     if (std::hypot(x - y, 2 * both) <= rounding * (x + y)) return u;
     const double angle = 0.5 * std::atan2(2 * both, x - y);

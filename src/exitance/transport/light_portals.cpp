@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -35,7 +36,7 @@ class PortalFinder {
         for (ElementId e : numbering.leaves) leaves_[rooms.of(tree, e)].push_back(e);
         Box box;
         for (const Piece& piece : stage.pieces) box.add(piece.patch.centre());
-        largest_ = std::max(box.diagonal(), 1e-300);
+        largest_ = std::max(box.diagonal(), min_divisor);
     }
 
     /// Casts up to `most` rays from a room and returns those that arrive in a larger room.

@@ -1,5 +1,7 @@
 #include "exitance/transport/linear_rows.hpp"
 
+#include <limits>
+
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/basis/element_fit.hpp"
@@ -10,8 +12,11 @@
 namespace exitance {
 namespace {
 
+/// Stored number of a coordinate of 1.
+constexpr double quantised_one = std::numeric_limits<std::uint16_t>::max();
+
 std::uint16_t quantised(double t) {
-    return static_cast<std::uint16_t>(std::clamp(t, 0.0, 1.0) * 65535 + 0.5);
+    return static_cast<std::uint16_t>(std::clamp(t, 0.0, 1.0) * quantised_one + 0.5);
 }
 
 /// Nodes of a leaf. A cell with many corners uses eight of the rule's nodes.
@@ -156,7 +161,7 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
     for (std::size_t i = node.first_ray; i < node.last_ray; ++i) {
         const Hit& hit = hits_[i];
         if (hit.leaf == missed) continue;
-        const double u = hit.u / 65535.0, v = hit.v / 65535.0;
+        const double u = hit.u / quantised_one, v = hit.v / quantised_one;
         const double counts = counts_.empty() ? 1 : static_cast<double>(counts_[i]);
         const Corners& c = corners[hit.leaf];
         if (leaves_[met_[hit.leaf]].triangle)
@@ -227,7 +232,7 @@ Spectrum LinearRows::gather_at(std::size_t node, std::span<const Spectrum> nodal
         const Hit& hit = hits_[i];
         if (hit.leaf == missed) continue;
         const std::size_t leaf = met_[hit.leaf];
-        const double u = hit.u / 65535.0, v = hit.v / 65535.0;
+        const double u = hit.u / quantised_one, v = hit.v / quantised_one;
         const Corners c = corners(leaf, nodal);
         const Spectrum E = leaves_[leaf].triangle
                                ? (1 - u - v) * c[0] + u * c[1] + v * c[2]

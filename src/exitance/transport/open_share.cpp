@@ -84,7 +84,7 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
 bool is_mostly_open(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                     const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
     constexpr std::size_t every = 8;
-    constexpr double far_below = 0.2;  // three standard errors of 64 strata
+    constexpr double far_below = 0.2;  // derived from three standard errors of 64 strata
     return open_share(stage, tree, numbering, locator, radiosity, seed, every) > mostly_open - far_below &&
            open_share(stage, tree, numbering, locator, radiosity, seed, 1) > mostly_open;
 }

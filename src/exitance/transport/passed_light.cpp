@@ -59,7 +59,8 @@ class PassedLight::Maker {
 
     void add_row(std::uint32_t i, RegionId own, RegionId behind, const std::vector<std::uint32_t>& others,
                  const Bvh& index) {
-        constexpr double rounding = 1e-9;  ///< Share of an element's area.
+        // Share of an element's area, and of its extent. Derived from double precision, with a margin for cut points.
+        constexpr double rounding = 1e-9;
         const ElementId e = elements_[i];
         const std::vector<Point> outline = tree_.outline(e);
         Box box;
@@ -82,7 +83,8 @@ class PassedLight::Maker {
         if (row.first == row.last) return;
         for (std::size_t k = 0; k < n; ++k)
             if (gram_[k * n + k] > 0)
-                gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;  // regularizes functions that slivers hardly determine
+                // Regularizes functions that slivers hardly determine; derived from rounding.
+                gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;
             else
                 gram_[k * n + k] = 1;  // diagonal entry for values that an element does not use
         std::vector<double> weights(out_.weights_.begin() + static_cast<std::ptrdiff_t>(first_weight),

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
@@ -34,13 +35,15 @@ constexpr std::size_t max_rooms = 64;  ///< Maximum number of rooms. Further par
 /// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random
 /// part.
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
-    constexpr Vec3 along{0.73, 0.54, 0.42};  // a direction that is not parallel to the walls of most buildings
+    // Any direction, derived from one requirement: it is not parallel to the walls of most buildings.
+    constexpr Vec3 along{0.73, 0.54, 0.42};
     constexpr double chance = 0.1;
     Box box;
     for (ElementId root : tree.roots()) box.add(tree.patch(root).centre());
     std::vector<double> out;
     for (std::size_t i = 0; i < numbering.leaves.size(); ++i) {
-        const Vec3 d = (tree.patch(numbering.leaves[i]).centre() - box.centre()) / std::max(box.diagonal(), 1e-300);
+        const Vec3 d =
+            (tree.patch(numbering.leaves[i]).centre() - box.centre()) / std::max(box.diagonal(), min_divisor);
         out.push_back(dot(d, along) + norm(d) + chance * static_cast<double>(hash(seed, i) >> 11) * 0x1p-53);
     }
     return out;
@@ -62,8 +65,9 @@ struct Part {
     }
     /// False if the part is a gap, several gaps, or a single wall.
     bool may_be_room() const {
+        constexpr double power_of_area = 1.5;  // derived from the dimensions of volumes and areas
         const Vec3 size = box.size();
-        return leaves.size() >= min_walls && volume >= thinnest * std::pow(area, 1.5) &&
+        return leaves.size() >= min_walls && volume >= thinnest * std::pow(area, power_of_area) &&
                std::min({size.x, size.y, size.z}) >= flattest * std::max({size.x, size.y, size.z});
     }
 };

@@ -23,7 +23,7 @@ double longest_extent(const ElementTree& tree, ElementId e) {
 
 /// Splits elements that belong to smaller rooms to the element size of their room.
 void cut_to_rooms(ElementTree& tree, const LightRooms& rooms, double edge) {
-    constexpr double diagonal = 1.5;  // longest extent of an element over its edge
+    constexpr double diagonal = 1.5;  // longest extent of an element over its edge; derived from sqrt(2), with a margin
     constexpr double coarsest =       // ratio of an element's area to wanted^2: a larger one belongs to several rooms
         64 * 64;
     std::vector<ElementId> open = tree.leaves();

@@ -314,7 +314,7 @@ double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& 
     if (outlook == VisibleFromMany::Outlook::clear) return unoccluded = true, 0;
     brightest_ = unseen_brightness * visible_.unoccluded(middle);
     area_ = area_of(whole);
-    const double slack = 1e-6 * std::sqrt(area_);
+    const double slack = coplanar_share * std::sqrt(area_);
     parts_.assign(1, whole);
     const std::vector<SourcePart> sources = {{{pair.source.begin(), pair.source.end()}, seen_blockers(), 0}};
     cut_along_contacts(slack);

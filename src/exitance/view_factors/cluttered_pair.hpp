@@ -21,10 +21,10 @@ class ClutteredExchange {
 
     /// Allowed estimated error: the larger of `relative` and `absolute`.
     struct Allowance {
-        double relative = 1e-4;                ///< Share of the value.
-        double absolute = 0;                   ///< m^2
-        double ignored = 0;                    ///< Exchange areas below this need no accuracy, m^2.
-        std::size_t max_evaluations = 20'000;  ///< Limit on the evaluations of a pair.
+        double relative = default_entry_error;  ///< Share of the value.
+        double absolute = 0;                    ///< m^2
+        double ignored = 0;                     ///< Exchange areas below this need no accuracy, m^2.
+        std::size_t max_evaluations = 20'000;   ///< Limit on the evaluations of a pair.
     };
 
     /// A_i F_ij of a pair, m^2; the pair must be as for OccludedExchange. Sets `unoccluded` if no blocker was found

@@ -12,8 +12,6 @@
 namespace exitance {
 namespace {
 
-/// Closure defects within this many standard deviations are noise: one row in 2,000 exceeds it by chance.
-constexpr double max_noise_deviations = 3.5;
 constexpr int max_sweeps = 200;         ///< Maximum number of sweeps of the relaxation of closure defects.
 constexpr double settled_share = 1e-6;  ///< Remaining share of the largest defect at which the relaxation stops.
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/raw_row.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 
@@ -10,7 +11,8 @@ namespace exitance {
 struct CombineOptions {
     double smallest = 0;    ///< Entries below this are dropped.
     double deviations = 0;  ///< See ClosedVariance::limit().
-    double error = 1e-3;    ///< R; closure defects are computed for rows with at most this error of the missed share.
+    double error =
+        default_row_error;  ///< R; closure defects are computed for rows with at most this error of the missed share.
 };
 
 /// Combines the two estimates of every pair of faces, weighted by their numbers of samples. These were fixed before

@@ -39,7 +39,7 @@ double disagreement(const ViewFactors& table, std::size_t i, std::size_t j) {
 
 bool matters(const ViewFactors& table, std::size_t i, std::size_t j) {
     const double there = table.row(i)[j], back = table.row(j)[i];
-    return !std::isfinite(there + back) || std::max(there, back) > ViewFactors::smallest_entry;
+    return !std::isfinite(there + back) || std::max(there, back) > smallest_entry;
 }
 
 struct Pair {
@@ -230,7 +230,7 @@ Result<void> fill(const Scene& scene, const EntryFactorOptions& options, RawRowS
                   const StopRequest& stop, ViewFactors& table, std::vector<std::uint8_t>& finished) {
     ViewPairs pairs(scene, stop);
     if (stop.requested()) return stopped("before the first row of view factors");
-    TableMaker maker(pairs, table, std::clamp(options.tolerance, 1e-12, 0.1), progress, stop);
+    TableMaker maker(pairs, table, std::clamp(options.tolerance, min_entry_error, max_entry_error), progress, stop);
     if (Result<void> done = maker.find_hidden(); !done) return done;
     if (Result<void> done = maker.compute_rows(finished, store, options.memory_limit_bytes); !done) return done;
     return maker.mend();

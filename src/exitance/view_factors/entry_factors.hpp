@@ -2,13 +2,15 @@
 
 #include "exitance/base/progress.hpp"
 #include "exitance/scene/scene.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/raw_row_store.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 
 namespace exitance {
 
 struct EntryFactorOptions {
-    double tolerance = 1e-4;                    ///< Relative error of every entry above 1e-6; 1e-12 to 0.1.
+    /// Relative error of every entry above smallest_entry; min_entry_error to max_entry_error.
+    double tolerance = default_entry_error;
     double smallest = 0;                        ///< Entries below this are dropped.
     std::size_t memory_limit_bytes = SIZE_MAX;  ///< Computation of rows stops if the process uses more.
 };

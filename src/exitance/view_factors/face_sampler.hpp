@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -20,7 +21,7 @@ class FaceSampler {
         double before = 0;
         while (k + 1 < triangles_.size() && triangles_[k].area_up_to <= wanted) before = triangles_[k++].area_up_to;
         const Triangle& t = triangles_[k];
-        const double share = std::clamp((wanted - before) / std::max(t.area_up_to - before, 1e-300), 0.0, 1.0);
+        const double share = std::clamp((wanted - before) / std::max(t.area_up_to - before, min_divisor), 0.0, 1.0);
         const double root = std::sqrt(share);
         return t.o + (root * (1 - v)) * t.a + (root * v) * t.b;
     }

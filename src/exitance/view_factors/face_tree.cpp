@@ -4,6 +4,8 @@
 #include <array>
 #include <numeric>
 
+#include "exitance/base/limits.hpp"
+
 namespace exitance {
 namespace {
 
@@ -13,7 +15,7 @@ using Coordinates = std::array<double, 6>;
 std::vector<Coordinates> coordinates_of(std::span<const ViewFace> faces) {
     Box all;
     for (const ViewFace& face : faces) all.add(face.box);
-    const double size = std::max(all.diagonal(), 1e-300);  // avoids division by zero
+    const double size = std::max(all.diagonal(), min_divisor);
     std::vector<Coordinates> out;
     out.reserve(faces.size());
     for (const ViewFace& face : faces) {

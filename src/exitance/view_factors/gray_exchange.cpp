@@ -8,12 +8,14 @@
 namespace exitance {
 namespace {
 
-constexpr double tolerance = 1e-12;  ///< Limit on the relative residual; below the error of any view factors.
+constexpr double tolerance = 1e-12;      ///< Limit on the relative residual, derived from double precision.
+constexpr double max_temperature = 1e5;  ///< K; hotter surfaces are mistakes, derived from the sun's 5,800 K.
 constexpr std::size_t max_iterations = 10'000;
+constexpr double power_of_temperature = 4;
 
 /// Black-body exitance, W/m^2.
 double black(double temperature) {
-    return stefan_boltzmann * std::pow(temperature, 4);
+    return stefan_boltzmann * std::pow(temperature, power_of_temperature);
 }
 
 Error wrong(std::string message, std::string hint) {
@@ -157,12 +159,12 @@ Result<void> check(const SparseFactors& factors, std::span<const ThermalSurface>
         if (!(s.emissivity > 0 && s.emissivity <= 1))
             return wrong(fmt::format("surface {}: emissivity {} is not in (0, 1]", i + 1, s.emissivity),
                          "a mirror-like surface has an emissivity of 0.02 or more");
-        if (s.temperature ? !(*s.temperature >= 0 && *s.temperature < 1e5) : !std::isfinite(s.heat))
+        if (s.temperature ? !(*s.temperature >= 0 && *s.temperature < max_temperature) : !std::isfinite(s.heat))
             return wrong(fmt::format("surface {}: temperature or heat is out of range", i + 1),
                          "temperatures are in kelvins, heat in watts");
     }
     if (!surroundings) return check_closed(factors);
-    if (!(*surroundings >= 0 && *surroundings < 1e5))
+    if (!(*surroundings >= 0 && *surroundings < max_temperature))
         return wrong("the temperature of the surroundings is out of range", "temperatures are in kelvins");
     return {};
 }
@@ -209,7 +211,7 @@ Result<GrayExchange> balance(const ExchangeAreas& exchange, const SparseFactors&
         if (exitance < 0)
             return wrong(fmt::format("surface {} would lose {:g} W at absolute zero", i + 1, Q),
                          "give it a smaller heat, or a temperature");
-        out.temperature.push_back(std::pow(exitance / stefan_boltzmann, 0.25));
+        out.temperature.push_back(std::pow(exitance / stefan_boltzmann, 1 / power_of_temperature));
     }
     return out;
 }

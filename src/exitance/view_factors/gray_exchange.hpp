@@ -11,7 +11,7 @@
 
 namespace exitance {
 
-/// Stefan and Boltzmann's constant, W/(m^2 K^4). Source: CODATA 2018.
+/// Stefan and Boltzmann's constant, W/(m^2 K^4). Derived from the constants of the SI; source: CODATA 2018.
 constexpr double stefan_boltzmann = 5.670374419e-8;
 
 /// Thermal state of a surface: gray, diffuse and opaque. Either its temperature or its net heat is given.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 
 namespace exitance {
@@ -190,7 +191,7 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     const Cell& cell = task.cell;
     if (task.whole >= 0 || cell.glance.black > 0 || (dominates_ && is_under_an_edge(cell))) return false;
     const double rho = convergence(cell, task.distance), step = 1 / (rho * rho);
-    const double far = 2 * cell.area * brightest(task.distance), middle = std::max(cell.middle, 1e-300);
+    const double far = 2 * cell.area * brightest(task.distance), middle = std::max(cell.middle, min_divisor);
     const double most = std::max(cell.glance.highest / middle - 1, 1 - cell.glance.lowest / middle),
                  varies = 3 * most * most, d = std::abs(cell.two_points - cell.area * middle);
     const bool is_triangle = cell.count == 3;  // three points of a triangle have only degree 2
@@ -198,7 +199,7 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     if (matters_)
         error = (is_triangle ? 0.2 : 0.03) * d + cell.two_points * (varies * varies / 270 + 0.005 * most);
     else
-        error = ((is_triangle ? 0.05 : 0.005) + 2 * d / std::max(cell.two_points, 1e-300)) * d +
+        error = ((is_triangle ? 0.05 : 0.005) + 2 * d / std::max(cell.two_points, min_divisor)) * d +
                 cell.two_points * (varies * varies / 2700 + 0.001 * most);
     return error + far * step * step <= task.allowed;
 }
@@ -343,7 +344,7 @@ std::optional<double> OccludedExchange::operator()(const OccludedPair& pair, con
     bool all = true;
     double estimate = 0;
     brightest_seen_ = unseen_share * visible_.unoccluded(middle_of(whole.corners()));
-    receiver_area_ = std::max(cross_area(whole.corners()), 1e-300);
+    receiver_area_ = std::max(cross_area(whole.corners()), min_divisor);
     for (const Cell& cell : cells_) {
         all &= cell.complete && cell.glance.lit == cell.glance.count;
         estimate += cell.two_points;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/visibility/critical_lines.hpp"
 #include "exitance/visibility/visible_from_many.hpp"
 
@@ -33,11 +34,11 @@ struct OccludedPair {
 
 /// Accuracy required of the quadrature of a partly hidden pair.
 struct Demand {
-    double relative = 1e-4;  ///< Relative error of the pair's exchange area.
-    double absolute = 0;     ///< Error that is always accepted, m^2.
-    double ignored = 0;      ///< Smaller exchange areas need no accuracy, m^2.
-    double large = 0;        ///< m^2; larger exchange areas are integrated more carefully.
-    double dominating = 0;   ///< m^2; larger exchange areas largely determine the error of their row.
+    double relative = default_entry_error;  ///< Relative error of the pair's exchange area.
+    double absolute = 0;                    ///< Error that is always accepted, m^2.
+    double ignored = 0;                     ///< Smaller exchange areas need no accuracy, m^2.
+    double large = 0;                       ///< m^2; larger exchange areas are integrated more carefully.
+    double dominating = 0;                  ///< m^2; larger exchange areas largely determine the error of their row.
     /// Limit on the cells of the receiver: with more, critical lines are not worthwhile.
     std::size_t max_cells = SIZE_MAX;
 };

@@ -10,6 +10,7 @@
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/face_sampler.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -98,7 +99,7 @@ std::vector<DrawnEntry> draw_entries(const SparseFactors& table, const RayCheckO
     std::vector<DrawnEntry> above;
     for (std::uint32_t i = 0; i < table.size(); ++i)
         for (std::size_t k = table.starts[i]; k < table.starts[i + 1]; ++k)
-            if (table.values[k] > ViewFactors::smallest_entry) above.push_back({i, table.columns[k], table.values[k]});
+            if (table.values[k] > smallest_entry) above.push_back({i, table.columns[k], table.values[k]});
     const std::size_t count = std::min(options.entries, above.size());
     RandomStream random(options.seed, Stream::reference, table.size());
     for (std::size_t k = 0; k < count; ++k) {  // a random selection: the first steps of a shuffle

@@ -158,13 +158,12 @@ RowCheck check_rows_by_rays(const Scene& scene, std::span<const std::uint8_t> fi
     double sum = 0;
     for (const CheckedRow& row : check.rows) {
         sum += row.squared_error / static_cast<double>(faces.size());
-        check.wrong_sums += row.largest_sum_excess > RowCheck::beyond_noise;
+        check.wrong_sums += row.largest_sum_excess > max_noise_deviations;
         check.sum_error = std::max(check.sum_error, row.largest_sum_error);
-        check.detectable_error =
-            std::max(check.detectable_error, row.detectable(options.error, RowCheck::beyond_noise));
+        check.detectable_error = std::max(check.detectable_error, row.detectable(options.error, max_noise_deviations));
         check.detectable_sum =
-            std::max(check.detectable_sum, options.error + RowCheck::beyond_noise * row.largest_sum_deviation);
-        check.wrong += std::max(row.squared_excess(options.error), row.largest_sum_excess) > RowCheck::beyond_noise;
+            std::max(check.detectable_sum, options.error + max_noise_deviations * row.largest_sum_deviation);
+        check.wrong += std::max(row.squared_excess(options.error), row.largest_sum_excess) > max_noise_deviations;
     }
     check.rays = 2 * options.rays * faces.size();
     check.error = std::sqrt(std::max(0.0, sum));

@@ -9,6 +9,7 @@
 #include "exitance/base/progress.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/scene/scene.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/row_scene.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 
@@ -19,7 +20,7 @@ struct RowCheckOptions {
     std::size_t rays = 1u << 17;  ///< Number of rays for each half of a row.
     std::size_t groups = 16;      ///< Random groups of neighbouring faces per row.
     std::uint64_t seed = 1;
-    double error = 1e-3;  ///< R, allowed error of every row.
+    double error = default_row_error;  ///< R, allowed error of every row.
 };
 
 /// Comparison of one row F with independent rays in two halves, G1 and G2.
@@ -46,14 +47,13 @@ struct CheckedRow {
 struct RowCheck {
     std::vector<CheckedRow> rows;
     std::size_t rays = 0;         ///< Rays of all rows together.
-    std::size_t wrong = 0;        ///< Number of rows whose squared error exceeds R^2 by more than `beyond_noise`.
+    std::size_t wrong = 0;        ///< Number of rows whose squared error exceeds R^2 by more than max_noise_deviations.
     std::size_t wrong_sums = 0;   ///< Like `wrong`, for the error of a sum over the row or a group.
     double error = 0;             ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
     double sum_error = 0;         ///< Largest difference of a sum over a row or group, including the noise of the rays.
     double detectable_error = 0;  ///< Least error that would have been found in every row.
     double detectable_sum = 0;    ///< Like detectable_error, for the error of a sum over a row or group.
     bool is_complete = true;      ///< False if a stop was requested before the last row.
-    static constexpr double beyond_noise = 3.5;
 };
 
 /// Returns the shares of pseudo-random rays from a face that hit each front first, for checks.

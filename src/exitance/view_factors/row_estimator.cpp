@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/closed_variance.hpp"
@@ -133,13 +134,14 @@ double RowEstimator::combined_limit(const RawRow& row) const {
 /// True if `other` may cover part of the face, so that rays starting there are blocked at once (Occluders::is_covered).
 bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
     const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
-    if (std::abs(dot(a.plane.n, b.plane.n)) < 0.999) return false;
+    if (std::abs(dot(a.plane.n, b.plane.n)) < parallel_cosine) return false;
     const double reach = 1e-5 * scene_.scene.size();
     for (std::size_t k = 0; k < 3; ++k)
         if (a.box.lo[k] > b.box.hi[k] + reach || b.box.lo[k] > a.box.hi[k] + reach) return false;
     const double height = a.plane.signed_distance(b.outline[0]);
     if (std::abs(height) > reach || (dot(a.plane.n, b.plane.n) > 0 && height <= scene_.slack)) return false;
-    const double margin = negligible_overlap * std::min(a.area / std::max(a.diameter, 1e-300), scene_.scene.size());
+    const double margin =
+        negligible_overlap * std::min(a.area / std::max(a.diameter, min_divisor), scene_.scene.size());
     return !are_apart(a, b, margin) && !are_apart(b, a, margin);
 }
 
@@ -164,7 +166,7 @@ void RowEstimator::find_candidates(std::size_t face) {
             return;
         }
         const Vec3& d = apart;
-        const double squared = std::max(apart2, 1e-300);
+        const double squared = std::max(apart2, min_divisor);
         const double cosines =
             cut ? squared : std::max(0.0, dot(own.plane.n, d)) * std::max(0.0, -dot(other.plane.n, d));
         const double about = cosines / (pi * squared * squared) * other.area;

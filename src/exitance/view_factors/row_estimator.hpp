@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/pair_sampler.hpp"
 #include "exitance/view_factors/raw_row.hpp"
 #include "exitance/view_factors/row_caster.hpp"
@@ -14,9 +15,10 @@ namespace exitance {
 
 /// Required accuracy of rows.
 struct RowDemand {
-    double error = 1e-3;         ///< R, limit on the error of a row.
-    double missed_error = 1e-3;  ///< Limit on the standard deviations of the shares of the sky and of backs.
-    double deviations = 0;       ///< A row exceeds R as rarely as a normal variable exceeds this, see ClosedVariance.
+    double error = default_row_error;  ///< R, limit on the error of a row.
+    double missed_error =
+        default_row_error;  ///< Limit on the standard deviations of the shares of the sky and of backs.
+    double deviations = 0;  ///< A row exceeds R as rarely as a normal variable exceeds this, see ClosedVariance.
 };
 
 /// Computes one row of view factors with the error R that it has after it is combined with the other rows: sqrt(L) +

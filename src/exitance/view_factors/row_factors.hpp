@@ -5,6 +5,7 @@
 
 #include "exitance/base/progress.hpp"
 #include "exitance/scene/scene.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/raw_row_store.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 
@@ -14,7 +15,7 @@ namespace exitance {
 inline constexpr double one_row_in_a_hundred = 2.33;
 
 struct RowFactorOptions {
-    double error = 1e-3;  ///< R: limit for every row on its error, with its bounds.
+    double error = default_row_error;  ///< R: limit for every row on its error, with its bounds.
     /// Rows exceed R as rarely as a normal variable exceeds its mean by that many standard deviations, both in the root
     /// of their squared error and in sums over groups of faces: see ClosedVariance::limit(). 0: R limits sqrt(sum of
     /// variances), which half of all rows exceed.

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 
+#include "exitance/view_factors/accuracy.hpp"
+
 namespace exitance {
 
 RowScene::RowScene(const Scene& s)
-    : scene(s),
-      occluders(s),
-      tracer(s),
-      faces(make_view_faces(s)),
-      slack(std::max(1e-8 * s.size(), occluders.rounding())) {
+    : scene(s), occluders(s), tracer(s), faces(make_view_faces(s)), slack(plane_slack(occluders)) {
     samplers.reserve(faces.size());
     for (SurfaceId id : s.surfaces().ids()) samplers.emplace_back(s, id);
     for (const ViewFace& face : faces) {

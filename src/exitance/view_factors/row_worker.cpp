@@ -5,13 +5,14 @@
 #include <optional>
 #include <utility>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/quadrature.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr double smallest_entry = 1e-6;    ///< Smaller entries need no relative accuracy.
 constexpr double large_entry = 3e-4;       ///< Larger entries may be among the largest of their row.
 constexpr double dominating_entry = 0.03;  ///< Larger entries determine their row's error.
 /// With more blockers, critical lines cut large faces into thousands of cells.
@@ -46,7 +47,7 @@ int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) cons
     if (rho < 1.5) return max_points + 1;
     // A source near a large receiver is brighter somewhere than on average, by about the receiver's area over the
     // squared distance, which requires that many more digits.
-    const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), 1e-300));
+    const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), min_divisor));
     return std::max(2, static_cast<int>(std::ceil(std::log(peak / (0.01 * tolerance_)) / (2 * std::log(rho)))));
 }
 

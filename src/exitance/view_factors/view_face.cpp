@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t max_corners = 12;  ///< Limit on the corners of a convex piece.
 /// Limits on the distance of stacked faces, as shares of the scene's size and of a face's box, and on the cosine of
 /// their normals; derived from ConvexPiece::thickness and Occluders::is_covered().
-constexpr double stacked_share = 2e-6, stacked_share_of_face = 2e-3, stacked_cosine = -0.999;
+constexpr double stacked_share = 2 * coplanar_share, stacked_share_of_face = 2 * coplanar_share_of_face;
+constexpr double stacked_cosine = -parallel_cosine;
 
 ViewFace make_face(const Scene& scene, SurfaceId s) {
     const Surface& surface = scene.surfaces()[s];

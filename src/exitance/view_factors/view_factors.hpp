@@ -20,8 +20,6 @@ struct ViewFactors {
     std::size_t mended = 0;     ///< Number of pairs of faces whose rows disagreed at first and were recomputed.
     std::size_t unsettled = 0;  ///< Number of pairs that still disagree by more than the tolerance.
 
-    static constexpr double smallest_entry = 1e-6;  ///< Entries below need no relative accuracy.
-
     std::size_t size() const { return areas.size(); }
     std::span<const double> row(std::size_t i) const { return std::span(factors).subspan(i * size(), size()); }
 };

@@ -5,6 +5,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 
 namespace exitance {
 namespace {
@@ -56,7 +57,7 @@ class BoxShaft {
 }  // namespace
 
 ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
-    : occluders_(scene), slack_(std::max(1e-8 * scene.size(), occluders_.rounding())), faces_(make_view_faces(scene)) {
+    : occluders_(scene), slack_(plane_slack(occluders_)), faces_(make_view_faces(scene)) {
     blockers_ = make_convex_blockers(occluders_, slack_);
     for (const ConvexBlocker& b : blockers_) {
         Box box;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/base/limits.hpp"
+
 namespace exitance {
 
 void CriticalLineFinder::find_corners(const SeenEdges& blocker) {
@@ -65,7 +67,7 @@ void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Poin
             over |= d > nearness_, under |= d < -nearness_;
         }
         const double x = dot(face.n, frame.u), y = dot(face.n, frame.v), length = std::sqrt(x * x + y * y);
-        if (!over || !under || length < 1e-12 || lines.size() >= max_) continue;
+        if (!over || !under || length < zero_sine || lines.size() >= max_) continue;
         const CriticalLine line{
             {x / length, y / length}, -face.signed_distance(frame.origin) / length, -HUGE_VAL, HUGE_VAL};
         if (crosses_receiver(line)) keep(line, lines);

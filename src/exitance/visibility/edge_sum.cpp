@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
@@ -12,8 +13,8 @@ namespace {
 
 using Workspace = VisibilityWorkspace;
 
-constexpr double on_plane = 1e-13;  ///< Sine of an angle below which an edge counts as contained in a plane through x.
-constexpr double max_rounding_gap = 1e-9;  ///< Gap between pieces that is too large for rounding.
+/// Gap between pieces that is too large for rounding; derived from double precision, with a margin of a million.
+constexpr double max_rounding_gap = 1e-9;
 
 /// An edge of the source or of an occluder, counter-clockwise around its polygon as seen from x.
 struct Edge {
@@ -24,7 +25,7 @@ struct Edge {
 };
 
 double noise(const Vec3& r) {
-    return on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
+    return edge_on_sine * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
 }
 
 /// Reduces [from, to] to the part of an edge on the inner side of a plane through x that does not contain the edge.
@@ -131,7 +132,7 @@ void add_polygon(std::span<const Vec3> corners, int owner, bool reversed, Bounda
         const Vec3 inward = cross(edge.b - edge.a, edge.a);
         const double length = norm(inward);
         // the edge points at x and appears as a single point
-        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;
+        if (length <= edge_on_sine * norm(edge.a) * norm(edge.b)) continue;
         edge.inward = inward / length;
         edge.noise_a = noise(edge.a), edge.noise_b = noise(edge.b);
         boundary.add_edge(edge);

@@ -50,10 +50,9 @@ struct Float3 {
     float x, y, z;
 };
 
-/// Converts to single precision. Embree accepts no coordinates beyond 1.8e18, so anything farther away than `far` sizes
-/// of the scene is clamped to that distance.
+/// Converts to single precision. Anything farther away than `far` sizes of the scene is clamped to that distance.
 Float3 to_float(const Vec3& v) {
-    const double far = 1e15;
+    constexpr double far = 1e15;  // derived from Embree, which accepts no coordinates beyond 1.8e18
     const auto within = [far](double c) { return static_cast<float>(std::clamp(c, -far, far)); };
     return {within(v.x), within(v.y), within(v.z)};
 }
@@ -287,8 +286,10 @@ struct RayTracer::Content {
         const double slope = dot(face.normal, direction);
         const double distance = dot(face.normal, face.corner - origin) / slope;
         const double found = packet.ray.tfar[lane];
-        // Nearly in the surface's plane the quotient is meaningless; use Embree's distance.
-        hit.distance = std::abs(distance - found) <= 1e-3 * found ? distance : found;
+        // Nearly in the surface's plane the quotient is meaningless; use Embree's distance. Derived from its single
+        // precision: otherwise, Embree's distance is more accurate than that.
+        constexpr double max_difference = 1e-3;
+        hit.distance = std::abs(distance - found) <= max_difference * found ? distance : found;
         hit.front = slope < 0;
         return hit.front || !opposed.has(hit.surface) || turn_over(origin, direction, own, hit);
     }

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr double on_line = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
+/// Largest distance of a corner in the source's plane, relative to its own; and margin of bounds, as a share of the
+/// largest distance. Both are derived from double precision: the margin covers the rounding of such distances.
+constexpr double max_stretch = 1e9, bounds_margin = 1e-9;
 
 /// Adds the part of a convex polygon with sign * heights[i] >= 0. For either sign the cut points are identical.
 void add_part(std::span<const Vec2> polygon, std::span<const double> heights, double sign, std::vector<Vec2>& out) {
@@ -44,7 +47,7 @@ void LitPart::begin(std::span<const Vec3> source) {
         corners_.push_back({dot(u_, r - origin_), dot(v_, r - origin_)});
         reach = std::max(reach, std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
     }
-    noise_ = on_line * reach;
+    noise_ = rounded_sine * reach;
     Fragment whole{0, static_cast<std::uint32_t>(source.size()), {}};
     for (const Vec2& p : corners_) whole.box.add(p);
     fragments_.push_back(whole);
@@ -55,12 +58,12 @@ Rectangle LitPart::bounds(std::span<const Vec3> corners) const {
     double reach = 0;
     for (const Vec3& r : corners) {
         const double stretch = depth_ / dot(normal_, r);
-        if (!(stretch > 0 && stretch < 1e9)) return {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
+        if (!(stretch > 0 && stretch < max_stretch)) return {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
         const Vec3 on_plane = stretch * r - origin_;
         box.add({dot(u_, on_plane), dot(v_, on_plane)});
         reach = std::max(reach, stretch * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z)));
     }
-    const double margin = 1e-9 * reach;
+    const double margin = bounds_margin * reach;
     return {box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
 }
 

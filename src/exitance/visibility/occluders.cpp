@@ -43,11 +43,13 @@ Occluders::Occluders(const Scene& scene) : scene_(&scene), other_side_(other_sid
         {std::abs(b.lo.x), std::abs(b.lo.y), std::abs(b.lo.z), std::abs(b.hi.x), std::abs(b.hi.y), std::abs(b.hi.z)});
     rounding_ = 16 * std::numeric_limits<double>::epsilon() * reach;
     of_region_.resize(scene.regions().size());
+    // Share of the area, derived from double precision: the area of a triangle of collinear corners.
+    constexpr double rounded_area = 1e-12;
     std::vector<Point> part;
     for (RegionId r : scene.regions().ids()) {
         const Region& region = scene.regions()[r];
         const std::size_t first = pieces_.size();
-        const double tolerance = 1e-12 * region.area;  // allows for collinear corners of coarse input
+        const double tolerance = rounded_area * region.area;
         if (region.loops.size() == 1 && is_convex(region.loops[0], region.plane.n, tolerance)) {
             add_piece(region.loops[0], r, region.surfaces[0], region.plane);
         } else {
@@ -85,7 +87,9 @@ void Occluders::add_windows() {
 }
 
 void Occluders::add_distant_pieces() {
-    constexpr double sky_distance = 1e6;  // distance of the sky, as a multiple of the scene's size
+    // Distance of the sky, as a multiple of the scene's size. Derived from coplanar_share: seen from anywhere in the
+    // scene, directions to it differ by less than that.
+    constexpr double sky_distance = 1e6;
     middle_ = scene_->box().centre();
     const std::size_t first = pieces_.size();
     for (const DistantFacet& facet : distant_facets(scene_->distant())) {
@@ -172,9 +176,10 @@ void Occluders::add_piece(std::span<const Point> corners, RegionId region, Surfa
 
 bool Occluders::is_back_of(RegionId a, RegionId b) const {
     const Region &front = scene_->regions()[a], &back = scene_->regions()[b];
-    if (std::abs(front.area - back.area) > 1e-6 * front.area || front.loops.empty() || back.loops.empty()) return false;
+    if (std::abs(front.area - back.area) > coplanar_share * front.area || front.loops.empty() || back.loops.empty())
+        return false;
     const Box p = box_of(front.loops[0]), q = box_of(back.loops[0]);
-    const double tolerance = 1e-6 * p.diagonal() + rounding_;
+    const double tolerance = coplanar_share * p.diagonal() + rounding_;
     return norm(p.lo - q.lo) <= tolerance && norm(p.hi - q.hi) <= tolerance;
 }
 
@@ -201,7 +206,7 @@ bool Occluders::is_covered(const Point& place, const Normal& n, RegionId own) co
         if (is_own(piece.region, own)) return false;
         const double facing = dot(piece.plane.n, n);
         const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // height of the piece above x, metres
-        if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return false;
+        if (std::abs(height) > piece.thickness || std::abs(facing) < parallel_cosine) return false;
         if (facing > 0 && height <= rounding_) return false;
         if (!contains(corners(p), piece.plane.n, x) || !is_stacked_on(*this, p, {n, dot(n, x)}, own)) return false;
         return facing > 0 || own.is_none() || !is_back_of(own, piece.region);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "exitance/base/limits.hpp"
+
 namespace exitance {
 namespace {
 
@@ -72,7 +74,8 @@ void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const 
         for (const Point& c : corners) {
             Vec3 normal = cross(b - a, c - a);
             const double length = norm(normal);
-            if (length <= 1e-12 * norm(b - a) * norm(c - a) || length == 0) continue;  // c is collinear with the edge
+            if (length <= zero_sine * norm(b - a) * norm(c - a) || length == 0)
+                continue;  // c is collinear with the edge
             normal *= 1 / length;
             double low = 0, high = 0;
             for (const std::span<const Point> side : {edges, corners})

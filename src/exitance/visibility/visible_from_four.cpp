@@ -4,14 +4,13 @@
 #include <memory>
 
 #include "exitance/base/four.hpp"
+#include "exitance/base/limits.hpp"
 
 namespace exitance {
 namespace {
 
 using namespace four;
 
-/// Sine of an angle that counts as zero, equal to the limit for single points.
-constexpr double zero_sine_of_four = 1e-12;
 constexpr std::size_t max_corners = 20, max_planes = 160, max_fragments = 160;
 
 /// A convex polygon relative to each of the four points.
@@ -33,7 +32,7 @@ EXITANCE_INLINE void sum_edges(const Polygon& polygon, const Normal& n, Real& su
     for (std::size_t i = 0; i < polygon.count; ++i) {
         const Vec &a = polygon.corner[i], &b = polygon.corner[i + 1 == polygon.count ? 0 : i + 1];
         const Vec c = cross(a, b - a);
-        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
+        const Real sine = max(sqrt(dot(c, c)), Real{} + min_length_of_product);
         sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
     }
 }
@@ -132,7 +131,7 @@ class VisibleFromFour::Work {
 
     /// Computes the heights of the corners over a plane, and their signs (-1, 0 or 1) per corner.
     Standing measure(const Polygon& polygon, const Vec& plane, Real* heights, int* signs) const {
-        const Real none = zero_sine_of_four * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
+        const Real none = zero_sine * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
         Standing standing;
         for (std::size_t i = 0; i < polygon.count; ++i) {
             heights[i] = dot(plane, polygon.corner[i]);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "exitance/base/four.hpp"
+#include "exitance/base/limits.hpp"
 #include "exitance/base/processor.hpp"
 
 #ifdef EXITANCE_HAS_WIDE_KERNELS

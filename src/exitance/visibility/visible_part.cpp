@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
@@ -13,8 +14,6 @@
 
 namespace exitance {
 namespace {
-
-constexpr double rounded_sine = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
 
 using Workspace = VisibilityWorkspace;
 

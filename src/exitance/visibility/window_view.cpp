@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
+
 namespace exitance {
 
 bool looks_out_on_faces(const Occluders& occluders, PieceId source) {
@@ -11,10 +13,8 @@ bool looks_out_on_faces(const Occluders& occluders, PieceId source) {
     const Box& box = occluders.scene().box();
     const Point farthest{plane.n.x > 0 ? box.lo.x : box.hi.x, plane.n.y > 0 ? box.lo.y : box.hi.y,
                          plane.n.z > 0 ? box.lo.z : box.hi.z};
-    // Share of the scene's size, the tolerance for panes being in one plane with their neighbours.
-    constexpr double in_plane = 1e-6;
     const auto is_beyond = [&](const Point& p) {
-        return plane.signed_distance(p) < -in_plane * occluders.scene().size();
+        return plane.signed_distance(p) < -coplanar_share * occluders.scene().size();
     };
     const std::vector<Pane>& panes = occluders.enclosure().others;
     return is_beyond(farthest) || std::any_of(panes.begin(), panes.end(), [&](const Pane& pane) {
@@ -35,7 +35,8 @@ void WindowView::add_separating_planes(std::span<const Point> edges, std::span<c
         for (const Point& c : corners) {
             const Vec3 normal = cross(b - a, c - a);
             const double length = norm(normal);
-            if (length <= 1e-12 * norm(b - a) * norm(c - a) || length == 0) continue;  // c is collinear with the edge
+            if (length <= zero_sine * norm(b - a) * norm(c - a) || length == 0)
+                continue;  // c is collinear with the edge
             Plane plane{normal / length, dot(normal, a) / length};
             const auto is_above = [&](std::span<const Point> points, double sign) {
                 return std::all_of(points.begin(), points.end(),

@@ -27,7 +27,6 @@
 namespace exitance {
 namespace {
 
-constexpr double default_row_error = 1e-3;
 constexpr std::size_t default_checked_rows = 4, default_checked_entries = 100, default_rays_an_entry = 1u << 14;
 
 /// Rays per checked row. The noise of the squared error of a row is 2 sqrt(sum F^2) / n. With n = 0.2 / R^2 and sum F^2

@@ -132,7 +132,7 @@ class Replay {
         if (found == line_element_.end() || *found != e.value || parent_.size() - first < 2) return false;
         if (parent_[first] != e.value || parent_[first + 1] != e.value) return false;
         const double* line = &line_[3 * static_cast<std::size_t>(found - line_element_.begin())];
-        if (tree.split_by_line(e, {{line[0], line[1]}, line[2]}, 0).is_none()) return false;
+        if (tree.split_by_line(e, {{line[0], line[1]}, line[2]}).is_none()) return false;
         // Repeatedly split slivers have inaccurate areas, but the same splits reproduce the same values.
         const double a = tree.area(ElementId(first)), b = tree.area(ElementId(first + 1));
         return a > 0 && b > 0 && a + b <= 1.5 * tree.area(e);

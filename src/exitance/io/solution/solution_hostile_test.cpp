@@ -136,7 +136,7 @@ TEST(HostileSolutions, RepeatedlySplitSliversAreAccepted) {
                                            {{0.2, 0.1, 0}, a, 1.1 * a + Vec3{0, 1e-11, 0}, Patch::Shape::triangle});
     for (int depth = 0; depth < 12; ++depth) {
         const Vec2 n = {random.uniform() - 0.5, random.uniform() - 0.5};
-        e = s.indirect.tree.split_by_line(e, {n, dot(n, s.indirect.tree.centre(e))}, 0);
+        e = s.indirect.tree.split_by_line(e, {n, dot(n, s.indirect.tree.centre(e))});
         ASSERT_FALSE(e.is_none());
     }
     s.indirect.values.clear();

@@ -43,7 +43,7 @@ class CornerSectors {
     /// Records a cut edge at a point. The point is singular if cut edges of different directions meet there.
     void meet(std::uint32_t p, Vec2 d) {
         Vec2& known = ends_[p];
-        constexpr double straight = 1e-6;  // sine of the angle up to which directions count as equal
+        constexpr double straight = 1e-6;  // sine up to which directions count as equal; derived from coplanar_share
         if (known.x == 0 && known.y == 0)
             known = d;
         else if (std::abs(cross(known, d)) > straight * std::sqrt(dot(known, known) * dot(d, d)))

@@ -50,6 +50,7 @@ EdgeFrame::EdgeFrame(const Point& a, const Point& b, const Point& across) {
 
 double slope_along(const CloughTocher::Data& data, std::size_t i) {
     const std::size_t j = (i + 1) % 3;
+    // Slope of the cubic in the middle, derived from its values and slopes at both ends.
     return 1.5 * (data.value[j] - data.value[i]) - 0.25 * (data.to_next[i][0] - data.to_next[j][1]);
 }
 

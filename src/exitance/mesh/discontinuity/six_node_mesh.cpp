@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace exitance {
+namespace {
+
+/// Distance of a point from its triangle that rounding may cause, as a share of the scene's size; derived from double
+/// precision.
+constexpr double slack_share = 1e-9;
+
+}  // namespace
 
 std::array<double, 6> six_node_weights(Vec2 st) {
     const double l[3] = {1 - st.x - st.y, st.x, st.y};
@@ -82,7 +89,7 @@ double SixNodeMesh::mean_radius_ratio() const {
 }
 
 SixNodeLocator::SixNodeLocator(const SixNodeMesh& mesh, const Scene& scene)
-    : mesh_(&mesh), trees_(scene.regions().size()), first_(scene.regions().size()), slack_(1e-9 * scene.size()) {
+    : mesh_(&mesh), trees_(scene.regions().size()), first_(scene.regions().size()), slack_(slack_share * scene.size()) {
     std::vector<std::uint32_t> count(scene.regions().size() + 1);
     for (const RegionId r : mesh.region) ++count[r.value + 1];
     for (std::size_t r = 0; r < scene.regions().size(); ++r) count[r + 1] += count[r];
@@ -112,8 +119,9 @@ SixNodeLocator::Place SixNodeLocator::find(RegionId region, const Point& p) cons
         const Point& o = mesh_->points[n[0]];
         const Vec3 a = mesh_->points[n[1]] - o, b = mesh_->points[n[2]] - o, w = p - o;
         const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), det = aa * bb - ab * ab;
-        // Triangles thinner than rounding contain no point that their neighbours do not.
-        constexpr double min_aspect = 1e-7;  // minimum height over length
+        // Minimum height over length. Derived from the root of double precision: thinner triangles contain no point
+        // that their neighbours do not.
+        constexpr double min_aspect = 1e-7;
         const double longest = std::max({aa, bb, aa + bb - 2 * ab});
         if (!(det > min_aspect * min_aspect * longest * longest)) return false;
         const double s = (bb * dot(a, w) - ab * dot(b, w)) / det, u = (aa * dot(b, w) - ab * dot(a, w)) / det;
@@ -121,8 +129,10 @@ SixNodeLocator::Place SixNodeLocator::find(RegionId region, const Point& p) cons
         if (inside > best_inside) best_inside = inside, best = {t, {s, u}};
         return inside >= 0;
     };
+    // Searched in boxes of growing size; derived from sizes between rounding and a thousandth of the scene.
+    constexpr double farthest = 1e6, step = 1e3;
     Box box;
-    for (double reach = slack_; best.triangle == none && reach <= 1e6 * slack_; reach *= 1e3) {
+    for (double reach = slack_; best.triangle == none && reach <= farthest * slack_; reach *= step) {
         const Vec3 around = Vec3{1, 1, 1} * reach;
         box.lo = p - around, box.hi = p + around;
         trees_[region].visit_box(box, look);
