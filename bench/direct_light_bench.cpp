@@ -59,7 +59,7 @@ void direct_light_at_points(benchmark::State& state) {
     double difference = 0;
     const PieceId source = setting.direct.emitters()[0].pieces.front();
     for (const Place& place : setting.places) {
-        const Receiver at{place.x, place.n, place.region};
+        const SurfacePoint at{place.x, place.n, place.region};
         const auto by = [&](VisiblePartMethod method) {
             return visible_form_factor(setting.occluders, at, source, scratch, method);
         };

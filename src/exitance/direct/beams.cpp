@@ -13,7 +13,7 @@ Vec3 Beams::far_away(const PunctualLight& light, const Point& x) const {
     return x - (2 * (scene.size() + norm(x - scene.box().centre()))) * light.direction;
 }
 
-Beams::Arrival Beams::arrival(const PunctualLight& light, const Receiver& at) const {
+Beams::Arrival Beams::arrival(const PunctualLight& light, const SurfacePoint& at) const {
     if (light.is_directional()) {
         const double cosine = -dot(at.n, light.direction);
         return {std::max(0.0, cosine) * light.intensity, far_away(light, at.x)};
@@ -25,9 +25,9 @@ Beams::Arrival Beams::arrival(const PunctualLight& light, const Receiver& at) co
     return {(light.share_towards(-d / r) * cosine_r / (r2 * r)) * light.intensity, light.position};
 }
 
-bool Beams::blocks(PieceId p, const Receiver& at, const Point& from) const {
+bool Beams::blocks(PieceId p, const SurfacePoint& at, const Point& from) const {
     const ConvexPiece& piece = occluders_->pieces()[p];
-    if (occluders_->is_own(piece.region, at.own)) return false;
+    if (occluders_->is_own(piece.region, at.region)) return false;
     const std::span<const Point> corners = occluders_->corners(p);
     const double here = dot(piece.plane.n, at.x - corners[0]), there = dot(piece.plane.n, from - corners[0]);
     const double rounding = occluders_->rounding();
@@ -44,7 +44,7 @@ bool Beams::blocks(PieceId p, const Receiver& at, const Point& from) const {
     return true;
 }
 
-bool Beams::is_blocked(const Receiver& at, const Point& from) const {
+bool Beams::is_blocked(const SurfacePoint& at, const Point& from) const {
     bool blocked = false;
     for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small}) {
         occluders_->visit_segment(size, at.x, from - at.x, [&](PieceId p) { return blocked = blocks(p, at, from); });
@@ -53,7 +53,7 @@ bool Beams::is_blocked(const Receiver& at, const Point& from) const {
     return false;
 }
 
-Spectrum Beams::irradiance(const Receiver& at, Spectrum* parallel) const {
+Spectrum Beams::irradiance(const SurfacePoint& at, Spectrum* parallel) const {
     Spectrum sum;
     for (const PunctualLight& light : *lights_) {
         Arrival arriving = arrival(light, at);
@@ -66,7 +66,7 @@ Spectrum Beams::irradiance(const Receiver& at, Spectrum* parallel) const {
     return sum;
 }
 
-Spectrum Beams::irradiance(const Receiver& at, std::span<const Beam> beams, std::span<const PieceId> candidates,
+Spectrum Beams::irradiance(const SurfacePoint& at, std::span<const Beam> beams, std::span<const PieceId> candidates,
                            Spectrum* parallel) const {
     Spectrum sum;
     for (const Beam& beam : beams) {

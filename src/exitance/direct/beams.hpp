@@ -32,7 +32,7 @@ class Beams {
 
     /// Returns the irradiance at a point, W/m^2. If `parallel` is given, adds to it the part of this irradiance that is
     /// due to parallel light. O(log pieces) per light.
-    Spectrum irradiance(const Receiver& at, Spectrum* parallel = nullptr) const;
+    Spectrum irradiance(const SurfacePoint& at, Spectrum* parallel = nullptr) const;
 
     /// Appends to `out` the lights that may illuminate a convex polygon (metres, counter-clockwise about n) of region
     /// `own`, and to `candidates` the pieces that may block them. Omits lights that a single piece hides from the whole
@@ -45,7 +45,7 @@ class Beams {
                  std::vector<PieceId>& candidates) const;
 
     /// Like irradiance() above, for a point of a prepared polygon: tests only the polygon's `beams` and `candidates`.
-    Spectrum irradiance(const Receiver& at, std::span<const Beam> beams, std::span<const PieceId> candidates,
+    Spectrum irradiance(const SurfacePoint& at, std::span<const Beam> beams, std::span<const PieceId> candidates,
                         Spectrum* parallel = nullptr) const;
 
   private:
@@ -54,9 +54,9 @@ class Beams {
         Spectrum E;
         Point from;
     };
-    Arrival arrival(const PunctualLight& light, const Receiver& at) const;
-    bool is_blocked(const Receiver& at, const Point& from) const;
-    bool blocks(PieceId piece, const Receiver& at, const Point& from) const;
+    Arrival arrival(const PunctualLight& light, const SurfacePoint& at) const;
+    bool is_blocked(const SurfacePoint& at, const Point& from) const;
+    bool blocks(PieceId piece, const SurfacePoint& at, const Point& from) const;
     Vec3 far_away(const PunctualLight& light, const Point& x) const;
 
     template <class EachPiece>

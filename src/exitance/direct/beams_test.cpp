@@ -100,7 +100,7 @@ TEST(Beams, APreparedReceiverHasTheSameLight) {
         EXPECT_LE(fewer.size(), candidates.size());
         for (int k = 0; k < 10; ++k) {
             const double s = random.uniform(), t = random.uniform() * s;
-            const Receiver at{part[0] + (s * 0.5 * w) * Vec3{1, 0, 0} + (t * 0.5 * w) * Vec3{0, 1, 0}, n, own};
+            const SurfacePoint at{part[0] + (s * 0.5 * w) * Vec3{1, 0, 0} + (t * 0.5 * w) * Vec3{0, 1, 0}, n, own};
             const Spectrum exact = beams.irradiance(at);
             EXPECT_EQ(beams.irradiance(at, whole, candidates), exact);
             EXPECT_EQ(beams.irradiance(at, some, fewer), exact);

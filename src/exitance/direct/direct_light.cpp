@@ -12,7 +12,7 @@ namespace {
 
 /// True unless the emitter's front and the receiver's upper side certainly do not face each other. Cheap and
 /// conservative.
-bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rounding) {
+bool may_see(const SurfacePoint& at, const DirectLight::Emitter& emitter, double rounding) {
     return emitter.plane.signed_distance(at.x) > rounding &&
            dot(at.n, emitter.centre - at.x) > -emitter.radius - rounding;
 }
@@ -114,8 +114,8 @@ void DirectLight::keep_only(std::span<const std::uint32_t> emitters, bool beams)
     if (!beams) beams_ = Beams(no_lights, *occluders_);
 }
 
-double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const {
-    if (!shines_on(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return 0;
+double DirectLight::form_factor(const SurfacePoint& at, const Emitter& emitter, Workspace& scratch) const {
+    if (!shines_on(emitter, at.region) || !may_see(at, emitter, occluders_->rounding())) return 0;
     double sum = 0;
     for (PieceId piece : emitter.pieces) sum += visible_form_factor(*occluders_, at, piece, scratch, emitter.radiance);
     return sum;
@@ -123,20 +123,20 @@ double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Work
 
 /// Projects the point to the plane of its region. Points from files and ray hits are off it by more than rounding, so
 /// that the other side of a two-sided sheet could block all light.
-Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) const {
+SurfacePoint DirectLight::receiver(const Point& x, const Normal& n, RegionId own) const {
     if (own.is_none()) return {x, n, own};
     const Plane& plane = occluders_->scene().regions()[own].plane;
     return {x - (plane.signed_distance(x) - occluders_->lift(own)) * plane.n, n, own};
 }
 
 /// Light of one emitter, through panes if there are any.
-Spectrum DirectLight::light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const {
+Spectrum DirectLight::light_of(const Emitter& emitter, const SurfacePoint& at, Workspace& scratch) const {
     if (!is_glazed(emitter)) {
         const double f = form_factor(at, emitter, scratch);
         return f > 0 ? f * emitter.exitance : Spectrum();
     }
     Spectrum sum;
-    if (!shines_on(emitter, at.own) || !may_see(at, emitter, occluders_->rounding())) return sum;
+    if (!shines_on(emitter, at.region) || !may_see(at, emitter, occluders_->rounding())) return sum;
     for (PieceId piece : emitter.pieces)
         sum += emitter.exitance * glazed_form_factor(*occluders_, at, piece, {}, scratch, emitter.radiance);
     return sum;
@@ -159,7 +159,7 @@ std::optional<Spectrum> DirectLight::irradiance_within(const Point& x, const Nor
 }
 
 Spectrum DirectLight::on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
-    const Receiver at = receiver(x, n, own);
+    const SurfacePoint at = receiver(x, n, own);
     Spectrum sum;
     for (const Emitter& emitter : emitters_) {
         sum += light_of(emitter, at, scratch);
@@ -315,7 +315,7 @@ Spectrum DirectLight::irradiance(const ReceiverLight& light, const Point& x, Wor
 
 Spectrum DirectLight::on_side(const ReceiverLight& light, const Point& x, Workspace& scratch,
                               Spectrum* parallel) const {
-    const Receiver at = receiver(x, light.n, light.own);
+    const SurfacePoint at = receiver(x, light.n, light.own);
     Spectrum sum;
     scratch.factors.resize(light.open.size());
     point_to_quads(at.x, light.n, light.open, scratch.factors);

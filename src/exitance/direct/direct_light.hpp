@@ -139,10 +139,10 @@ class DirectLight {
     const Scene& scene() const { return *scene_; }
 
     /// Returns the form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
-    double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
+    double form_factor(const SurfacePoint& at, const Emitter& emitter, Workspace& scratch) const;
 
     /// Returns a receiver for visibility computations: x projected to the plane of region `own` (or unchanged if none).
-    Receiver receiver(const Point& x, const Normal& n, RegionId own) const;
+    SurfacePoint receiver(const Point& x, const Normal& n, RegionId own) const;
 
   private:
     void add_distant_emitters(const Scene& scene);
@@ -153,7 +153,7 @@ class DirectLight {
         return emitter.sky == Emitter::Sky::window ? !occluders_->enclosure().others.empty()
                                                    : !occluders_->scene().panes().empty();
     }
-    Spectrum light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const;
+    Spectrum light_of(const Emitter& emitter, const SurfacePoint& at, Workspace& scratch) const;
     Spectrum on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
     Spectrum on_side(const ReceiverLight& light, const Point& x, Workspace& scratch, Spectrum* parallel) const;
     void prepare_side(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,

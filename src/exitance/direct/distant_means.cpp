@@ -138,7 +138,7 @@ void DistantMeans::find_parts(const ElementTree& tree, std::span<const ElementId
             sky_.aim(n, room.aim_);
             if (room.aim_.weight[0] > 0) add(nullptr, room.aim_.open, first_rays_to_sky);
         }
-        const Receiver at = direct_->receiver(tree.patch(e).at(tree.centre(e)), n, region);
+        const SurfacePoint at = direct_->receiver(tree.patch(e).at(tree.centre(e)), n, region);
         for (const DistantDisc& sun : suns_) {
             const DirectLight::Emitter& emitter = direct_->emitters()[sun.name.emitter];
             if (!direct_->shines_on(emitter, region)) continue;

@@ -84,7 +84,7 @@ class DistantMeans::Workspace {
     SkyTree::Aim aim_;
     std::vector<Part> parts_;  ///< Parts of an element are consecutive.
     std::vector<Ray> rays_;
-    std::vector<SurfacePoint> from_, to_, sorted_from_, sorted_to_;
+    std::vector<RayEnd> from_, to_, sorted_from_, sorted_to_;
     std::vector<Vec3> ways_;
     std::array<std::vector<double>, 4> coordinates_;
     DirectionOrder order_;

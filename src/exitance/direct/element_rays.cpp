@@ -29,7 +29,7 @@ double likely_radiance(const DirectLight& direct, const EmitterTree& tree, const
 /// in whose plane or behind it the point lies are left out although they may shine on other parts of the element. This
 /// loses 2% of the light in the sample scene `carpet` if elements have edges of 1 m, and 0.2% if they have 0.5 m.
 /// radius  distance of the element's farthest corner from the point, metres
-void RayLight::find_terms(const Receiver& at, double radius, Workspace& room) const {
+void RayLight::find_terms(const SurfacePoint& at, double radius, Workspace& room) const {
     constexpr double error_of_light = 0.1;  // clusters whose light is wrong by this share have the wrong rank at most
     tree_.cut(at, error_of_light, 0, room.cut_);
     const bool is_directed = direct_->scene().has_directed_emission();

@@ -102,11 +102,11 @@ std::uint32_t EmitterTree::middle_of(const Node& node) {
 }
 
 /// Unoccluded light of a single source, exact.
-double EmitterTree::exact(const Node& leaf, const Receiver& at) const {
+double EmitterTree::exact(const Node& leaf, const SurfacePoint& at) const {
     const Source& source = sources_[leaf.first];
     const DirectLight::Emitter& emitter = direct_->emitters()[source.name.emitter];
     const Occluders& occluders = direct_->occluders();
-    if (source.region == at.own || emitter.plane.signed_distance(at.x) <= occluders.rounding() ||
+    if (source.region == at.region || emitter.plane.signed_distance(at.x) <= occluders.rounding() ||
         occluders.lie_in_one_plane(at.x, at.n, source.name.piece))
         return 0;
     return point_to_polygon(at.x, at.n, occluders.corners(source.name.piece)) * mean(emitter.exitance);
@@ -119,7 +119,7 @@ double EmitterTree::exact(const Node& leaf, const Receiver& at) const {
 /// The relative error is about (spread / d)^2, plus the spread of the normals times (spread / d). If the horizon or the
 /// plane of one of its sources crosses the cluster, its light is anything from 0 to the maximum for its power; it then
 /// counts as 0 with that maximum as its error.
-EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at) const {
+EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const SurfacePoint& at) const {
     const Node& node = nodes_[number];
     const Vec3 d = node.centre - at.x;
     const double d2 = squared_norm(d), distance = std::sqrt(d2), up = dot(at.n, d);
@@ -147,7 +147,7 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at)
 }
 
 /// Splits all nodes with an error larger than `most`; single sources become exact.
-void EmitterTree::open(const Term& term, const Receiver& at, double most, std::vector<Term>& out) const {
+void EmitterTree::open(const Term& term, const SurfacePoint& at, double most, std::vector<Term>& out) const {
     if (term.light <= 0 && term.error <= 0) return;
     const Node& node = nodes_[term.node];
     if (term.error <= most || out.size() >= max_terms) {
@@ -161,7 +161,7 @@ void EmitterTree::open(const Term& term, const Receiver& at, double most, std::v
     }
 }
 
-void EmitterTree::cut(const Receiver& at, double relative, double absolute, Cut& out) const {
+void EmitterTree::cut(const SurfacePoint& at, double relative, double absolute, Cut& out) const {
     out.terms.clear(), out.light = out.error = 0;
     if (nodes_.empty()) return;
     out.terms.push_back(look_at(0, at));

@@ -63,15 +63,15 @@ class EmitterTree {
     };
     /// Splits the clusters with the largest errors until the total error is below max(relative * light, absolute), or
     /// until there are about `max_terms` clusters. About 100 ns per term.
-    void cut(const Receiver& at, double relative, double absolute, Cut& out) const;
+    void cut(const SurfacePoint& at, double relative, double absolute, Cut& out) const;
     static constexpr std::size_t max_terms = 4096;
 
   private:
     Node make_node(std::uint32_t first, std::uint32_t last) const;
     std::uint32_t middle_of(const Node& node);
-    Term look_at(std::uint32_t node, const Receiver& at) const;
-    void open(const Term& term, const Receiver& at, double most, std::vector<Term>& out) const;
-    double exact(const Node& leaf, const Receiver& at) const;
+    Term look_at(std::uint32_t node, const SurfacePoint& at) const;
+    void open(const Term& term, const SurfacePoint& at, double most, std::vector<Term>& out) const;
+    double exact(const Node& leaf, const SurfacePoint& at) const;
 
     const DirectLight* direct_;
     std::vector<Source> sources_;

@@ -57,7 +57,7 @@ MirroredLight::MirroredLight(const Scene& scene, const RayTracer& tracer) : scen
 /// Chances of the panes at a place, by their approximate solid angle, and the panes as seen from there.
 class MirroredLight::Panes {
   public:
-    Panes(const std::vector<Pane>& panes, const std::vector<double>& area, const Receiver& place)
+    Panes(const std::vector<Pane>& panes, const std::vector<double>& area, const SurfacePoint& place)
         : panes_(panes), area_(area), x_(place.x) {
         double total = 0;
         for (std::size_t i = 0; i < panes.size(); ++i) {
@@ -100,7 +100,7 @@ struct MirroredLight::Sums {
     }
 };
 
-MirroredLight::Estimate MirroredLight::at(const Receiver& place, double E, const LightAccuracy& accuracy,
+MirroredLight::Estimate MirroredLight::at(const SurfacePoint& place, double E, const LightAccuracy& accuracy,
                                           std::uint64_t key) const {
     if (pane_area_.empty()) return {};
     constexpr std::size_t max_images = 64;
@@ -133,7 +133,7 @@ MirroredLight::Estimate MirroredLight::at(const Receiver& place, double E, const
 }
 
 /// One sample of E_m from skies: a point of a pane.
-Spectrum MirroredLight::by_sky(const Receiver& place, Panes& panes, double s, double t, double choice) const {
+Spectrum MirroredLight::by_sky(const SurfacePoint& place, Panes& panes, double s, double t, double choice) const {
     const auto [number, chance] = panes.choose(choice);
     if (!(chance > 0)) return {};
     const Pane& pane = scene_.panes()[number];
@@ -152,13 +152,13 @@ Spectrum MirroredLight::by_sky(const Receiver& place, Panes& panes, double s, do
 
 /// True if neither the way from a place to a point of a pane nor the further way along `onwards` (of length 1) to the
 /// end is blocked.
-bool MirroredLight::is_open(const Receiver& from, const Point& mirror, const Vec3& onwards,
-                            const SurfacePoint& end) const {
+bool MirroredLight::is_open(const SurfacePoint& from, const Point& mirror, const Vec3& onwards,
+                            const RayEnd& end) const {
     // Rays start and end away from the pane, by more than rounding to single precision, so that it does not block them.
     const double off = 0x1p-18 * scene_.size();
     const Vec3 there = mirror - from.x;
     const Point before = mirror - (off / norm(there)) * there;
-    const std::array<SurfacePoint, 2> begins{{{from.x, from.own}, {mirror + off * onwards, RegionId()}}},
+    const std::array<RayEnd, 2> begins{{{from.x, from.region}, {mirror + off * onwards, RegionId()}}},
         ends{{{before, RegionId()}, end}};
     std::array<bool, 2> blocked{};
     tracer_.occluded(begins, ends, blocked);
@@ -166,7 +166,8 @@ bool MirroredLight::is_open(const Receiver& from, const Point& mirror, const Vec
 }
 
 /// Irradiance per area of an emitter around one of its points, by the mirror image of that point in one pane, W/m^4.
-Spectrum MirroredLight::by_emitter(const Receiver& place, const Piece& piece, const Point& on, const Pane& pane) const {
+Spectrum MirroredLight::by_emitter(const SurfacePoint& place, const Piece& piece, const Point& on,
+                                   const Pane& pane) const {
     const double height = dot(pane.n, place.x - pane.corners[0]), other = dot(pane.n, on - pane.corners[0]);
     if ((height > 0) != (other > 0)) return {};
     const Vec3 towards = on - 2 * other * pane.n - place.x;  // vector to the mirror image
@@ -182,7 +183,7 @@ Spectrum MirroredLight::by_emitter(const Receiver& place, const Piece& piece, co
 }
 
 /// One sample of E_m from emitters: a point chosen in proportion to power, and a pane.
-Spectrum MirroredLight::by_emitters(const Receiver& place, const Panes& panes,
+Spectrum MirroredLight::by_emitters(const SurfacePoint& place, const Panes& panes,
                                     const std::array<double, 4>& random) const {
     const auto [e, chance] = chosen(power_up_to_, random[2]);
     const auto [p, pane_chance] = panes.choose(random[3]);
@@ -193,7 +194,7 @@ Spectrum MirroredLight::by_emitters(const Receiver& place, const Panes& panes,
 }
 
 /// E_m from a disc of the sky (the first indices) or a light without extent (further indices), by one pane.
-Spectrum MirroredLight::by_image(const Receiver& place, std::size_t light, const Pane& pane) const {
+Spectrum MirroredLight::by_image(const SurfacePoint& place, std::size_t light, const Pane& pane) const {
     const auto& discs = scene_.distant().discs;
     const bool is_disc = light < discs.size();
     const PunctualLight* lamp = is_disc ? nullptr : &scene_.lights()[light - discs.size()];
@@ -222,7 +223,7 @@ Spectrum MirroredLight::by_image(const Receiver& place, std::size_t light, const
 }
 
 /// E_m from the sun and from lights without extent.
-MirroredLight::Estimate MirroredLight::images(const Receiver& place, std::size_t most, std::uint64_t key) const {
+MirroredLight::Estimate MirroredLight::images(const SurfacePoint& place, std::size_t most, std::uint64_t key) const {
     Estimate out;
     const std::size_t discs = scene_.distant().discs.size(), lights = discs + scene_.lights().size();
     const std::size_t all = lights * scene_.panes().size(), count = std::min(all, most);

@@ -36,20 +36,20 @@ class MirroredLight {
     };
     /// Returns E_m with the accuracy required of it and the other light `E` at the place, W/m^2. `key` selects the
     /// random numbers. O(panes + rays).
-    Estimate at(const Receiver& place, double E, const LightAccuracy& accuracy, std::uint64_t key) const;
+    Estimate at(const SurfacePoint& place, double E, const LightAccuracy& accuracy, std::uint64_t key) const;
 
     /// Returns the part of E_m from sun and lights without extent: from all mirror images, or from `most` of them
     /// chosen at random.
-    Estimate images(const Receiver& place, std::size_t most, std::uint64_t key) const;
+    Estimate images(const SurfacePoint& place, std::size_t most, std::uint64_t key) const;
 
   private:
     class Panes;
     struct Sums;
-    Spectrum by_sky(const Receiver& place, Panes& panes, double s, double t, double choice) const;
-    Spectrum by_emitters(const Receiver& place, const Panes& panes, const std::array<double, 4>& random) const;
-    Spectrum by_emitter(const Receiver& place, const Piece& piece, const Point& on, const Pane& pane) const;
-    Spectrum by_image(const Receiver& place, std::size_t light, const Pane& pane) const;
-    bool is_open(const Receiver& from, const Point& mirror, const Vec3& onwards, const SurfacePoint& end) const;
+    Spectrum by_sky(const SurfacePoint& place, Panes& panes, double s, double t, double choice) const;
+    Spectrum by_emitters(const SurfacePoint& place, const Panes& panes, const std::array<double, 4>& random) const;
+    Spectrum by_emitter(const SurfacePoint& place, const Piece& piece, const Point& on, const Pane& pane) const;
+    Spectrum by_image(const SurfacePoint& place, std::size_t light, const Pane& pane) const;
+    bool is_open(const SurfacePoint& from, const Point& mirror, const Vec3& onwards, const RayEnd& end) const;
 
     const Scene& scene_;
     const RayTracer& tracer_;

@@ -59,7 +59,7 @@ void PlaceLight::add_mirrored(const Point& x, const Normal& n, RegionId own, con
     if (!behind.is_none()) add(through, -n, behind);
 }
 
-Spectrum PlaceLight::mirrored_images(const Receiver& at, std::size_t most, std::uint64_t key) const {
+Spectrum PlaceLight::mirrored_images(const SurfacePoint& at, std::size_t most, std::uint64_t key) const {
     return mirrored_ ? mirrored_->images(at, most, key).irradiance : Spectrum();
 }
 

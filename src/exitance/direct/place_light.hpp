@@ -59,7 +59,7 @@ class PlaceLight {
     static DirectLight::WorthCounting worth_counting(double work);
     /// Returns light of sun and lamps without extent that panes mirror onto a receiver, by at most `most` mirror images
     /// chosen by `key`, W/m^2. Unbiased.
-    Spectrum mirrored_images(const Receiver& at, std::size_t most, std::uint64_t key) const;
+    Spectrum mirrored_images(const SurfacePoint& at, std::size_t most, std::uint64_t key) const;
     /// True if panes mirror direct light, which has no closed form: light at places then has noise.
     bool is_mirrored() const { return mirrored_ != nullptr; }
 

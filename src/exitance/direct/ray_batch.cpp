@@ -74,7 +74,7 @@ class RayLight::RayMaker {
         part_.blocks[block].all += weight;
         const auto number = static_cast<std::uint32_t>(&part_ - room_.parts_.data());
         room_.rays_.push_back({number, block, is_distant, window, weight});
-        room_.from_.push_back({at_.x, at_.own}), room_.to_.push_back({to, region});
+        room_.from_.push_back({at_.x, at_.region}), room_.to_.push_back({to, region});
     }
 
     void to_sky(std::uint32_t i, double s, double t) {
@@ -121,7 +121,7 @@ class RayLight::RayMaker {
         if (!(drawn.chance > 0)) return;
         const EmitterTree::Source& source = *drawn.source;
         const DirectLight::Emitter& emitter = light_.direct_->emitters()[source.name.emitter];
-        if (!light_.direct_->shines_on(emitter, at_.own)) return;
+        if (!light_.direct_->shines_on(emitter, at_.region)) return;
         const Point y = uniform_on(occluders_.corners(source.name.piece), source.area, s, t);
         const Vec3 d = y - at_.x;
         const double above = dot(at_.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
@@ -133,7 +133,7 @@ class RayLight::RayMaker {
 
     const RayLight& light_;
     const Occluders& occluders_;
-    Receiver at_;
+    SurfacePoint at_;
     Part& part_;
     Workspace& room_;
     double reach_;  ///< Length of rays to the sky, beyond all surfaces, metres.
@@ -158,7 +158,7 @@ void RayLight::add_rays(const Start& start, Part& part, std::uint32_t last, Work
         if (start.tree) {
             const Vec2 uv = start.tree->uniform(start.element, room.start_s_[k], room.start_t_[k]);
             const Point x = start.tree->patch(start.element).at(uv);
-            maker.start_at(direct_->receiver(x, start.at.n, start.at.own).x);
+            maker.start_at(direct_->receiver(x, start.at.n, start.at.region).x);
         }
         maker.make(part.rays + k, room.s_[k], room.t_[k], room.u_[k]);
     }
@@ -173,8 +173,8 @@ void RayLight::continue_through_windows(Workspace& room) const {
         // Shares of the scene's size. The step is derived from single precision, in which rays are traced: it is wider
         // than the distance from the pane at which the first part of the ray ended.
         constexpr double step = 3e-5, beyond_all = 2;
-        const Point& end = room.to_[i].at;
-        const Vec3 w = normalized(end - room.from_[i].at);
+        const Point& end = room.to_[i].x;
+        const Vec3 w = normalized(end - room.from_[i].x);
         room.onwards_.push_back(i);
         room.onwards_from_.push_back({end + (step * size_) * w, RegionId()});
         room.onwards_to_.push_back({end + (beyond_all * size_) * w, RegionId()});
@@ -185,8 +185,8 @@ void RayLight::continue_through_windows(Workspace& room) const {
         Workspace::Ray& ray = room.rays_[room.onwards_[k]];
         room.blocked_[room.onwards_[k]] = hidden[k];
         if (is_coloured_ && !hidden[k])
-            ray.weight *= colour_between(direct_->occluders().enclosure().others, room.onwards_from_[k].at,
-                                         room.onwards_to_[k].at);
+            ray.weight *=
+                colour_between(direct_->occluders().enclosure().others, room.onwards_from_[k].x, room.onwards_to_[k].x);
     }
 }
 
@@ -203,7 +203,7 @@ void RayLight::trace(Workspace& room) const {
         if (room.blocked_[i]) continue;
         Workspace::Ray& ray = room.rays_[i];
         if (is_coloured_)  // rays pass by the mean of the bands
-            ray.weight *= colour_between(direct_->occluders().scene().panes(), room.from_[i].at, room.to_[i].at);
+            ray.weight *= colour_between(direct_->occluders().scene().panes(), room.from_[i].x, room.to_[i].x);
         Part& part = room.parts_[ray.part];
         part.blocks[ray.block].arrived += ray.weight;
         if (ray.is_distant) part.distant += ray.weight;

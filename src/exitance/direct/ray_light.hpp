@@ -101,17 +101,17 @@ class RayLight {
     Estimate on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                      Workspace& room) const;
     const SkyOpenings& openings() const;
-    double find_parts(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const;
-    void add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const;
+    double find_parts(const SurfacePoint& at, const LightAccuracy& accuracy, Workspace& room) const;
+    void add_openings(const SurfacePoint& at, const LightAccuracy& accuracy, Workspace& room) const;
     double variance(const Part& part) const;
     double light_through_openings(const Workspace& room) const;
-    void add_discs(const Receiver& at, Workspace& room) const;
-    void add_piece(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const;
-    Spectrum open_light(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const;
+    void add_discs(const SurfacePoint& at, Workspace& room) const;
+    void add_piece(const SurfacePoint& at, const DirectLight::SourceName& source, Workspace& room) const;
+    Spectrum open_light(const SurfacePoint& at, const DirectLight::SourceName& source, Workspace& room) const;
     void add_rays(const Start& start, Part& part, std::uint32_t last, Workspace& room) const;
     void trace(Workspace& room) const;
     void continue_through_windows(Workspace& room) const;
-    void find_terms(const Receiver& at, double radius, Workspace& room) const;
+    void find_terms(const SurfacePoint& at, double radius, Workspace& room) const;
     void find_terms_in_sight(const Start& start, Workspace& room) const;
 
     /// Standard deviation of the light that one ray finds from a half-hidden source, relative to the source's
@@ -162,7 +162,7 @@ struct RayLight::Part {
 
 /// Place from which rays start, or element on which they start at uniform points.
 struct RayLight::Start {
-    Receiver at;        ///< The place, or a point of the element.
+    SurfacePoint at;    ///< The place, or a point of the element.
     std::uint64_t key;  ///< Random key.
     const ElementTree* tree = nullptr;
     ElementId element = {};  ///< Element of `tree`, if there is one.
@@ -202,7 +202,7 @@ class RayLight::Workspace {
     };
     std::vector<ElementTerm> terms_;
     std::vector<Ray> rays_;
-    std::vector<SurfacePoint> from_, to_, onwards_from_, onwards_to_;
+    std::vector<RayEnd> from_, to_, onwards_from_, onwards_to_;
     std::vector<std::size_t> onwards_;
     std::vector<double> s_, t_, u_, start_s_, start_t_;
     std::unique_ptr<bool[]> blocked_;

@@ -89,14 +89,14 @@ double RayLight::variance(const Part& part) const {
 }
 
 /// Unoccluded light of a piece of an emitter.
-Spectrum RayLight::open_light(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const {
+Spectrum RayLight::open_light(const SurfacePoint& at, const DirectLight::SourceName& source, Workspace& room) const {
     const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
-    if (!direct_->shines_on(emitter, at.own)) return {};
+    if (!direct_->shines_on(emitter, at.region)) return {};
     return visible_form_factor(direct_->occluders(), at, source.piece, {}, room.exact, emitter.radiance) *
            emitter.exitance;
 }
 
-void RayLight::add_discs(const Receiver& at, Workspace& room) const {
+void RayLight::add_discs(const SurfacePoint& at, Workspace& room) const {
     if (discs_.empty()) return;
     if (room.disc_light_.empty() || !(room.disc_normal_ == at.n)) {
         room.disc_normal_ = at.n, room.disc_light_.clear();
@@ -113,7 +113,7 @@ void RayLight::add_discs(const Receiver& at, Workspace& room) const {
                                    .from = direct_->occluders().middle()});
 }
 
-void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const {
+void RayLight::add_piece(const SurfacePoint& at, const DirectLight::SourceName& source, Workspace& room) const {
     const Spectrum open = open_light(at, source, room);
     if (!(max(open) > 0)) return;
     const std::span<const Point> corners = direct_->occluders().corners(source.piece);
@@ -126,7 +126,7 @@ void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& sour
 }
 
 /// Adds the light of the sky through openings, after the sky itself, unless it is too little to matter.
-void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
+void RayLight::add_openings(const SurfacePoint& at, const LightAccuracy& accuracy, Workspace& room) const {
     const double unaimed = openings().choose(at.x, at.n, room.cells_) * mean(room.aim_.open);
     Spectrum light;
     for (const PortalCell& cell : room.cells_) {
@@ -144,9 +144,9 @@ void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, W
 
 /// Finds the parts of the light at a receiver and the numbers of their first rays. Returns the unoccluded light, mean
 /// over bands.
-double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
+double RayLight::find_parts(const SurfacePoint& at, const LightAccuracy& accuracy, Workspace& room) const {
     room.parts_.clear(), room.seen_.clear();
-    if (!sky_.empty() && !direct_->occluders().enclosure().holds(at.own)) {
+    if (!sky_.empty() && !direct_->occluders().enclosure().holds(at.region)) {
         sky_.aim(at.n, room.aim_);
         if (room.aim_.weight[0] > 0) {
             room.parts_.push_back({.kind = Part::Kind::sky, .open = room.aim_.open});

@@ -90,7 +90,7 @@ class SkySearch {
     std::span<const SkyOpenings::Sun> suns_;
     double size_;
     SkyTree::Aim aim_;
-    std::vector<SurfacePoint> from_, to_;
+    std::vector<RayEnd> from_, to_;
     std::vector<std::uint32_t> number_;
     std::vector<RayHit> hits_;
     std::array<bool, rays_of_place> blocked_{};

@@ -64,7 +64,7 @@ class SmallSources::Centre {
 
     /// Returns the unoccluded irradiance, through panes, at a place of the polygon.
     Spectrum light_at(const Point& x, const Polygon& on) const {
-        const Receiver receiver = direct_.receiver(x, on.n, on.own);
+        const SurfacePoint receiver = direct_.receiver(x, on.n, on.own);
         if (!emitter_) return direct_.beams().irradiance(receiver, std::span(&beam_, 1), {});
         Spectrum out = parallel_;
         if (!is_far) {

@@ -64,7 +64,7 @@ class Sight {
 
     const DirectLight& direct_;
     const ReceiverLight& light_;
-    Receiver at_;
+    SurfacePoint at_;
     DirectLight::Workspace& workspace_;
     bool sees_some_ = false, sees_all_ = true;
 };

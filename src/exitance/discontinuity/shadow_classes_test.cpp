@@ -45,7 +45,7 @@ Sight sight_of(const Stage& stage, const Point& x, RegionId region) {
     VisibilityWorkspace scratch;
     const Normal& n = stage.scene.regions()[region].plane.n;
     if (stage.occluders.is_covered(x, n, region)) return out.faces_any = true, out;
-    const Receiver at = stage.direct.receiver(x, n, region);
+    const SurfacePoint at = stage.direct.receiver(x, n, region);
     for (const DirectLight::Emitter& e : stage.direct.emitters())
         for (const PieceId piece : e.pieces) {
             if (!stage.direct.shines_on(e, region)) continue;

@@ -100,7 +100,7 @@ Spectrum WeakLight::irradiance(const Point& x, const Normal& n, RegionId r, Work
         }
         room.factors_.resize(weak.size());
     }
-    const Receiver at = direct_->receiver(x, n, r);
+    const SurfacePoint at = direct_->receiver(x, n, r);
     point_to_quads(at.x, n, room.quads_, room.factors_);
     room.from_.clear(), room.to_.clear(), room.kernels_.clear();
     for (std::size_t k = 0; k < weak.size(); ++k) {
@@ -142,7 +142,7 @@ Spectrum WeakLight::irradiance(const Point& x, const Normal& n, RegionId r, Work
 
 Spectrum WeakLight::irradiance(const ReceiverLight& strong, const Point& x, Workspace& room) const {
     constexpr std::uint32_t max_listed_candidates = 24;  // testing this many costs as much as a search of the tree
-    const Receiver at = direct_->receiver(x, strong.n, strong.own);
+    const SurfacePoint at = direct_->receiver(x, strong.n, strong.own);
     Spectrum out = irradiance(x, strong.n, strong.own, room);
     room.exact.factors.resize(strong.open.size());
     point_to_quads(at.x, strong.n, strong.open, room.exact.factors);

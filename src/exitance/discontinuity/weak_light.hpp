@@ -89,7 +89,7 @@ class WeakLight::Workspace {
     const WeakLight* owner_ = nullptr;
     QuadBatch quads_;
     std::vector<double> factors_, kernels_;
-    std::vector<SurfacePoint> from_, to_;
+    std::vector<RayEnd> from_, to_;
     std::unique_ptr<bool[]> blocked_;
     std::size_t room_for_ = 0;
 };

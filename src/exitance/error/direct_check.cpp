@@ -20,19 +20,19 @@ DirectCheck::DirectCheck(const Stage& stage, const PathTracer& paths, const Proj
         closed_form_work_ += emitter.radiance.is_directed() ? directed : diffuse;
 }
 
-DirectCheck::Difference DirectCheck::exact_difference(const HitPoint& hit, const Spectrum& projected,
+DirectCheck::Difference DirectCheck::exact_difference(const RayEnd& hit, const Spectrum& projected,
                                                       double absolute_error, PlaceLight::Workspace& room) const {
     const Normal& n = stage_->scene.regions()[hit.region].plane.n;
     LightAccuracy accuracy = accuracy_;
     accuracy.absolute += absolute_error;
-    const PlaceLight::Estimate direct = stage_->place_light.at(hit.y, n, hit.region, accuracy, room);
+    const PlaceLight::Estimate direct = stage_->place_light.at(hit.x, n, hit.region, accuracy, room);
     const double of_forms = direct.rays > 0 ? direct.work : std::max(direct.work, closed_form_work_);
     return {projected_.weight * (direct.irradiance - projected), static_cast<double>(direct.rays) + of_forms};
 }
 
-Spectrum DirectCheck::sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const {
+Spectrum DirectCheck::sampled_difference(const RayEnd& hit, const Spectrum& projected, RandomStream& random) const {
     const Normal& n = stage_->scene.regions()[hit.region].plane.n;
-    return projected_.weight * (paths_->step({hit.y, n, hit.region}, random).direct - projected);
+    return projected_.weight * (paths_->step({hit.x, n, hit.region}, random).direct - projected);
 }
 
 Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gather, std::uint64_t key,
@@ -60,7 +60,7 @@ Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gath
     return sum / static_cast<double>(gather.hits.size());
 }
 
-double DirectCheck::probability(const CheckPlan& plan, const HitPoint& hit) const {
+double DirectCheck::probability(const CheckPlan& plan, const RayEnd& hit) const {
     // computing a misfit requires a search, so skip it where it is unused
     return plan.per_misfit > 0 ? plan.probability(misfit(hit)) : plan.share;
 }
@@ -86,15 +86,15 @@ struct PilotHit {
 struct PilotFound {
     double gather = 0;  ///< Variance of the gather without a check, times the place's weight in the estimate.
     std::array<PilotHit, pilot_rays> hits;
-    std::optional<HitPoint> first;  ///< The first hit, at which exact light is evaluated.
-    Spectrum projected;             ///< Projected direct light there, W/m^2.
+    std::optional<RayEnd> first;  ///< The first hit, at which exact light is evaluated.
+    Spectrum projected;           ///< Projected direct light there, W/m^2.
 };
 
 PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const ReflectedLight& b, const PilotPlace& place,
                     double rays_of_all, std::uint64_t key, GatherWorkspace& gather, DirectCheck::Workspace& room) {
     PilotFound out;
     const Region& region = stage.scene.regions()[place.at.region];
-    cast_gather(stage, place.at.at, region.plane.n, place.at.region, pilot_rays, key, b.bright_places(), gather);
+    cast_gather(stage, place.at.x, region.plane.n, place.at.region, pilot_rays, key, b.bright_places(), gather);
     const Gathered found = read_gather(b, gather);
     RandomStream random(key, Stream::certificate);
     room.projected.resize(gather.fronts.size());
@@ -104,7 +104,7 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
     double square = 0;
     for (std::size_t k = 0; k < gather.fronts.size(); ++k) {
         const double count = gather.counts.empty() ? 1 : gather.counts[k];
-        const HitPoint& hit = gather.fronts[k];
+        const RayEnd& hit = gather.fronts[k];
         const Spectrum rho = count * stage.scene.material(hit.region).reflectance;
         square += mean(count * gather.values[k] * (count * gather.values[k]));
         if (!check.has_projection()) continue;

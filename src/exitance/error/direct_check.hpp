@@ -14,7 +14,7 @@ struct ProjectedDirect {
     const ReflectedLight* irradiance = nullptr;  ///< E_proj at the hits, W/m^2; null: no projection is read.
     Spectrum weight{1.0};                        ///< w, the share of E_proj in the function.
     /// RMS of rho (E_dir - E_proj) on the element at a hit, as measured by the projection, W/m^2; empty: unknown.
-    std::function<double(const HitPoint&)> misfit = {};
+    std::function<double(const RayEnd&)> misfit = {};
 };
 
 /// Parameters for checking the hits of a gather.
@@ -48,7 +48,7 @@ class DirectCheck {
 
     struct Workspace {
         PlaceLight::Workspace clustered;  ///< For direct light at hits, exact or by rays.
-        std::vector<HitPoint> hits;
+        std::vector<RayEnd> hits;
         std::vector<double> counts;  ///< Rays per hit, divided by the probability of its check.
         std::vector<Spectrum> projected;
     };
@@ -66,13 +66,13 @@ class DirectCheck {
     /// Returns the difference, with E_dir evaluated as a solution does at points. The work of closed forms grows with
     /// the blockers cut from the emitters; directed radiance makes them quadratures, some twenty times as expensive.
     /// `absolute_error`: see CheckPlan.
-    Difference exact_difference(const HitPoint& hit, const Spectrum& projected, double absolute_error,
+    Difference exact_difference(const RayEnd& hit, const Spectrum& projected, double absolute_error,
                                 PlaceLight::Workspace& room) const;
     /// Returns an unbiased sample of the difference, by one step of a path.
-    Spectrum sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const;
+    Spectrum sampled_difference(const RayEnd& hit, const Spectrum& projected, RandomStream& random) const;
 
-    double probability(const CheckPlan& plan, const HitPoint& hit) const;
-    double misfit(const HitPoint& hit) const { return projected_.misfit ? projected_.misfit(hit) : 0; }
+    double probability(const CheckPlan& plan, const RayEnd& hit) const;
+    double misfit(const RayEnd& hit) const { return projected_.misfit ? projected_.misfit(hit) : 0; }
 
     const PathTracer& paths() const { return *paths_; }
     const ProjectedDirect& projected() const { return projected_; }
@@ -87,7 +87,7 @@ class DirectCheck {
 
 /// A place of the pilot, which predicts variances.
 struct PilotPlace {
-    SurfacePoint at;
+    RayEnd at;
     double weight;    ///< Weight in the mean over the pilot's places; only ratios count.
     double rays = 1;  ///< Number of rays that places like this one receive; only ratios count.
 };

@@ -19,7 +19,7 @@ struct DoubtedFloor {
         return stage.place_light.at(y, scene.regions()[region].plane.n, region, LightAccuracy(), workspace).irradiance;
     }};
     ProjectedDirect projected{&direct, Spectrum(1.0),
-                              [](const HitPoint& hit) { return hit.region == floor ? 1e3 : 0.0; }};
+                              [](const RayEnd& hit) { return hit.region == floor ? 1e3 : 0.0; }};
     DirectCheck check{stage, paths, projected, LightAccuracy()};
 
     /// Returns places on the floor, which sees no floor, and as many on the ceiling.
@@ -40,7 +40,7 @@ struct DoubtedFloor {
 TEST(CheckPlan, WorkCountsRaysNotWeights) {
     const DoubtedFloor room;
     PlaceLight::Workspace workspace;
-    const HitPoint hit{DoubtedFloor::floor, {0.4, 0.3, 0}};
+    const RayEnd hit{{0.4, 0.3, 0}, DoubtedFloor::floor};
     const double work = room.check.exact_difference(hit, Spectrum(), 0, workspace).work;
     // The form factor between opposite faces of a cube. Each of these hits is checked, since its misfit is large.
     constexpr double share_of_hits = 0.1998;

@@ -18,19 +18,18 @@ LatePaths::LatePaths(const Stage& stage, const ElementFunction& indirect, const 
       holds_direct_(holds_direct),
       locator_(indirect.tree, stage.scene.regions().size()) {}
 
-Spectrum LatePaths::read(const ReflectedLight& light, const PathTracer::Vertex& y) const {
-    const HitPoint at{y.region, y.x};
+Spectrum LatePaths::read(const ReflectedLight& light, const SurfacePoint& y) const {
+    const RayEnd at{y.x, y.region};
     Spectrum value;
     light.read(std::span(&at, 1), std::span(&value, 1));
     return value;
 }
 
-Spectrum LatePaths::sample(const PathTracer::Vertex& x, double a, double b, RandomStream& random,
-                           std::size_t& rays) const {
+Spectrum LatePaths::sample(const SurfacePoint& x, double a, double b, RandomStream& random, std::size_t& rays) const {
     const PathTracer& paths = check_.paths();
     const auto per_step = static_cast<std::size_t>(paths.rays_per_step());
     Spectrum sum, throughput(1.0);
-    std::optional<PathTracer::Vertex> y = paths.first(x, a, b);
+    std::optional<SurfacePoint> y = paths.first(x, a, b);
     ++rays;
     if (!y) return sum;
     PathTracer::Step at_y = paths.step(*y, random);
@@ -42,7 +41,7 @@ Spectrum LatePaths::sample(const PathTracer::Vertex& x, double a, double b, Rand
         throughput *= rho / survival;
         Spectrum found = Spectrum() - indirect_.at(locator_.find(y->region, y->x));
         if (holds_direct_) found += at_y.direct;
-        const std::optional<PathTracer::Vertex> z = at_y.next;
+        const std::optional<SurfacePoint> z = at_y.next;
         if (!z) return sum + throughput * found;
         at_y = paths.step(*z, random);
         rays += per_step;
@@ -93,7 +92,7 @@ LateMisfit LatePaths::measure(std::span<const ResidualSample> samples, std::span
                 found[k].weight = s.weight;
                 if (s.is_covered) continue;
                 const Normal& n = stage_.scene.regions()[s.region].plane.n;
-                const PathTracer::Vertex x{indirect_.tree.patch(s.place.element).at(s.place.uv), n, s.region};
+                const SurfacePoint x{indirect_.tree.patch(s.place.element).at(s.place.uv), n, s.region};
                 std::array<Spectrum, 2> half;
                 for (std::uint64_t which = 0; which < 2; ++which) {
                     RandomStream random(seed, Stream::certificate, k, 2 + which);

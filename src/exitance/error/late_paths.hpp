@@ -34,7 +34,7 @@ class LatePaths {
 
     /// Returns one sample of (H e)(x), W/m^2, and adds the rays cast to `rays`. `a`, `b`: random numbers in [0, 1) for
     /// the direction of the first ray.
-    Spectrum sample(const PathTracer::Vertex& x, double a, double b, RandomStream& random, std::size_t& rays) const;
+    Spectrum sample(const SurfacePoint& x, double a, double b, RandomStream& random, std::size_t& rays) const;
 
     /// Compares `late` (one entry per leaf of the coarse mesh) with two independent sets of paths at some of the
     /// samples. Casts about `max_rays` rays. In one of forty cases noise alone is reported as a misfit. A significant
@@ -46,7 +46,7 @@ class LatePaths {
     /// Measures the misfit with two sets of `paths` paths at each place.
     LateMisfit measure(std::span<const ResidualSample> samples, std::span<const Spectrum> late, std::uint64_t seed,
                        std::uint32_t paths) const;
-    Spectrum read(const ReflectedLight& light, const PathTracer::Vertex& y) const;
+    Spectrum read(const ReflectedLight& light, const SurfacePoint& y) const;
 
     const Stage& stage_;
     const ElementFunction& indirect_;

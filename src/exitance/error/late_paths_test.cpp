@@ -47,7 +47,7 @@ TEST(LatePaths, FindErrorsThatArriveFromOtherSurfaces) {
     const WrongFurnace furnace;
     RandomStream random(7, Stream::certificate);
     const LatePaths paths(furnace.stage, furnace.delivered, furnace.b, furnace.check, false);
-    const PathTracer::Vertex x{{0.7, 0.4, 0}, {0, 0, 1}, RegionId(0)};
+    const SurfacePoint x{{0.7, 0.4, 0}, {0, 0, 1}, RegionId(0)};
     double sum = 0;
     std::size_t rays = 0;
     constexpr int count = 4000;

@@ -79,7 +79,7 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     if (!sample.is_covered) {
         Spectrum E = indirect_.at(at.place);
         if (check_.has_projection()) {
-            const HitPoint here{region, x};
+            const RayEnd here{x, region};
             Spectrum projected;
             check_.projected().irradiance->read(std::span(&here, 1), std::span(&projected, 1));
             E += check_.projected().weight * projected;

@@ -39,13 +39,13 @@ QuickFunction::QuickFunction(const ElementFunction& function, std::size_t region
     share_on_node(std::span(leaves_)), share_on_node(locator_.leaves());
 }
 
-void QuickFunction::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
+void QuickFunction::read(std::span<const RayEnd> hits, std::span<Spectrum> values) const {
     constexpr std::size_t together = 32;
     std::array<LeafFinder::Query, together> queries;
     for (std::size_t first = 0; first < hits.size(); first += together) {
         const std::size_t count = std::min(together, hits.size() - first);
         for (std::size_t i = 0; i < count; ++i)
-            locator_.find_root(hits[first + i].region, hits[first + i].y, queries[i]);
+            locator_.find_root(hits[first + i].region, hits[first + i].x, queries[i]);
         locator_.leaves().find(std::span(queries).first(count));
         for (std::size_t i = 0; i < count; ++i)
             if (queries[i].leaf < leaves_.size()) __builtin_prefetch(leaves_.data() + queries[i].leaf);

@@ -15,7 +15,7 @@ class QuickFunction final : public ReflectedLight {
     /// store all leaves, the function must outlive the object.
     QuickFunction(const ElementFunction& function, std::size_t region_count);
 
-    void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
+    void read(std::span<const RayEnd> hits, std::span<Spectrum> values) const override;
 
     /// True if the object does not use the function any more.
     bool stands_alone() const { return function_ == nullptr; }

@@ -22,7 +22,7 @@ TEST(QuickFunction, HasTheValuesOfTheFunction) {
         const Point p = patch.at(uniform_in_shape(patch.shape, s, t));
         const RegionId region = function.tree.region(root);
         const Spectrum expected = function.at(locator.find(region, p));
-        const HitPoint hit{region, p};
+        const RayEnd hit{p, region};
         Spectrum found;
         quick.read(std::span(&hit, 1), std::span(&found, 1));
         // Single precision of values up to 30.
@@ -54,7 +54,7 @@ TEST(QuickFunction, HasTheSameValuesOnTrianglesThatTheFinderDoesNotStore) {
     const QuickFunction quick(function, 2), of_stored(stored, 2);
     for (int i = 0; i < 500; ++i) {
         const double s = random.uniform(), t = random.uniform();
-        const HitPoint hit{RegionId(0), function.tree.patch(ElementId(0)).at(s, t)};
+        const RayEnd hit{function.tree.patch(ElementId(0)).at(s, t), RegionId(0)};
         Spectrum a, b;
         quick.read(std::span(&hit, 1), std::span(&a, 1));
         of_stored.read(std::span(&hit, 1), std::span(&b, 1));

@@ -131,10 +131,10 @@ std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const 
         {{0.5, 0.5}, {inside, inside}, {1 - inside, inside}, {inside, 1 - inside}, {1 - inside, 1 - inside}}};
     std::vector<LeafLight> out(leaves.size());
     parallel_ranges(leaves.size(), 1024, [&](std::size_t first, std::size_t last) {
-        std::vector<HitPoint> points;
+        std::vector<RayEnd> points;
         for (std::size_t i = first; i < last; ++i)
             for (const Vec2& p : places)
-                points.push_back({tree.region(leaves[i]), tree.patch(leaves[i]).at(tree.uniform(leaves[i], p.x, p.y))});
+                points.push_back({tree.patch(leaves[i]).at(tree.uniform(leaves[i], p.x, p.y)), tree.region(leaves[i])});
         std::vector<Spectrum> values(points.size());
         b.read(points, values);
         for (std::size_t k = 0; k < values.size(); ++k) {

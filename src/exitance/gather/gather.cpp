@@ -111,7 +111,7 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
     for (std::size_t k = 0; k < all; ++k) {
         const RayHit& hit = w.hits[k];
         if (hit.surface.is_none() || !hit.front || (!cells.empty() && counts[k] == 0)) continue;
-        w.fronts.push_back({hit.region, place_of(stage.scene, hit, w.origins[k], w.directions[k])});
+        w.fronts.push_back({place_of(stage.scene, hit, w.origins[k], w.directions[k]), hit.region});
         w.share.push_back(w.quarter[k]);
         if (!cells.empty()) w.counts.push_back(counts[k]);
     }

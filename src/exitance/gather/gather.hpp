@@ -15,18 +15,12 @@ namespace exitance {
 /// Reflected radiosity b at a point of a region, W/m^2, which a ray evaluates at its hit.
 using RadiosityAt = std::function<Spectrum(RegionId, const Point&)>;
 
-/// A ray's hit on the front of a surface.
-struct HitPoint {
-    RegionId region;
-    Point y;
-};
-
 /// Reflected radiosity at many ray hits in one call, so that leaf lookups are batched.
 class ReflectedLight {
   public:
     virtual ~ReflectedLight() = default;
-    /// values[i] = b at hits[i], W/m^2; as many values as hits.
-    virtual void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const = 0;
+    /// values[i] = b at hits[i], which are on fronts of surfaces, W/m^2; as many values as hits.
+    virtual void read(std::span<const RayEnd> hits, std::span<Spectrum> values) const = 0;
 
     /// Places at which rays that gather this light are aimed; null: at the openings of the stage only. They change the
     /// noise, not the expected result. `places` must outlive this object.
@@ -41,8 +35,8 @@ class ReflectedLight {
 class PointwiseLight final : public ReflectedLight {
   public:
     explicit PointwiseLight(RadiosityAt b) : b_(std::move(b)) {}
-    void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override {
-        for (std::size_t i = 0; i < hits.size(); ++i) values[i] = b_(hits[i].region, hits[i].y);
+    void read(std::span<const RayEnd> hits, std::span<Spectrum> values) const override {
+        for (std::size_t i = 0; i < hits.size(); ++i) values[i] = b_(hits[i].region, hits[i].x);
     }
 
   private:
@@ -68,7 +62,7 @@ struct GatherWorkspace {
     std::vector<RayHit> hits;
     /// Per ray: 4 times the index of its place, plus the quarter (0 to 3) of its point.
     std::vector<std::uint32_t> quarter;
-    std::vector<HitPoint> fronts;       ///< Hits at which b is evaluated.
+    std::vector<RayEnd> fronts;         ///< Hits at which b is evaluated.
     std::vector<std::uint32_t> share;   ///< Entry of `quarter` for each hit.
     std::vector<double> counts;         ///< Weight of each hit if rays are aimed at openings (`PortalAim`); else empty.
     std::vector<Spectrum> values;       ///< b at each hit.

@@ -116,7 +116,7 @@ class RaysTogether {
                 look_around(rays_[order[k]].element, sorted_starts_[k]);
                 continue;
             }
-            fronts_.push_back({hit.region, place_of(stage_.scene, hit, sorted_starts_[k].at, sorted_directions_[k])});
+            fronts_.push_back({place_of(stage_.scene, hit, sorted_starts_[k].x, sorted_directions_[k]), hit.region});
             share_.push_back(order[k]);
         }
         values_.resize(fronts_.size());
@@ -125,22 +125,22 @@ class RaysTogether {
 
     /// Tests whether the start of a ray that hit a back is hidden. Does nothing if a hidden start of the element was
     /// found before.
-    void look_around(std::uint32_t element, const SurfacePoint& start) {
+    void look_around(std::uint32_t element, const RayEnd& start) {
         std::uint8_t& hidden = hidden_[element];
         if (hidden != 0) return;
-        hidden = !is_in_open(stage_, start.at, stage_.scene.regions()[start.region].plane.n, start.region);
+        hidden = !is_in_open(stage_, start.x, stage_.scene.regions()[start.region].plane.n, start.region);
     }
 
     const Stage& stage_;
     const ElementTree& tree_;
     const ReflectedLight& b_;
     std::vector<Ray> rays_;
-    std::vector<SurfacePoint> starts_, sorted_starts_;
+    std::vector<RayEnd> starts_, sorted_starts_;
     std::vector<Vec3> directions_, sorted_directions_;
     std::array<std::vector<double>, 4> coordinates_;
     DirectionOrder order_;
     std::vector<RayHit> hits_;
-    std::vector<HitPoint> fronts_;
+    std::vector<RayEnd> fronts_;
     std::vector<std::uint32_t> share_;  ///< Entry of `rays_` for each front.
     std::vector<Spectrum> values_;
     std::vector<std::array<QuarterSums, PooledGather::terms>> sums_;  ///< Per element.

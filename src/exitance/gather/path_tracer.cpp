@@ -8,14 +8,14 @@ namespace exitance {
 
 PathTracer::PathTracer(const Stage& stage) : stage_(stage), lights_(stage.direct) {}
 
-std::optional<PathTracer::Vertex> PathTracer::first(const Vertex& from, double a, double b) const {
+std::optional<SurfacePoint> PathTracer::first(const SurfacePoint& from, double a, double b) const {
     const Vec3 direction = met_direction(stage_.scene, from.region, from.n, a, b);
     return vertex_of(trace(from, direction, Mirrored::followed), from, direction);
 }
 
-Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream& random) const {
+Spectrum PathTracer::path(const SurfacePoint& probe, double a, double b, RandomStream& random) const {
     Spectrum sum, throughput(1.0);
-    std::optional<Vertex> y = first(probe, a, b);
+    std::optional<SurfacePoint> y = first(probe, a, b);
     while (y) {
         const Spectrum& rho = stage_.scene.material(y->region).reflectance;
         const double survival = max(rho);
@@ -28,11 +28,11 @@ Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream&
     return sum;
 }
 
-PathTracer::Step PathTracer::step(const Vertex& vertex, RandomStream& random) const {
-    Vertex y = vertex;
+PathTracer::Step PathTracer::step(const SurfacePoint& vertex, RandomStream& random) const {
+    SurfacePoint y = vertex;
     // Light that leaves a diffusing pane arrived on either side.
     if (const RegionId behind = stage_.scene.behind(y.region); !behind.is_none())
-        if (random.uniform() < stage_.scene.material(y.region).through) y = Vertex{y.x, -y.n, behind};
+        if (random.uniform() < stage_.scene.material(y.region).through) y = SurfacePoint{y.x, -y.n, behind};
     Step out{shadow_ray(y, random), {}};
     const Beams& beams = stage_.direct.beams();
     if (!beams.empty()) out.direct += beams.irradiance({y.x, y.n, y.region});
@@ -49,11 +49,11 @@ PathTracer::Step PathTracer::step(const Vertex& vertex, RandomStream& random) co
 }
 
 /// Light of sky and emitters that the path's next ray meets, straight or mirrored, times the weight of that ray.
-Spectrum PathTracer::met_light(const RayHit& hit, const Vertex& from, const Vec3& direction) const {
+Spectrum PathTracer::met_light(const RayHit& hit, const SurfacePoint& from, const Vec3& direction) const {
     const Vec3 w = normalized(arriving(stage_.scene, hit, direction));
     if (hit.surface.is_none())
         return stage_.scene.distant().domes.empty() ? Spectrum() : stage_.scene.distant().radiosity(w, false);
-    const std::optional<Vertex> met = vertex_of(hit, from, direction);
+    const std::optional<SurfacePoint> met = vertex_of(hit, from, direction);
     if (!met) return {};
     const Spectrum& exitance = stage_.scene.material(met->region).exitance;
     if (!(max(exitance) > 0)) return {};
@@ -66,21 +66,21 @@ double PathTracer::rays_per_step() const {
     return 1.0 + (lights_.empty() ? 0 : 1) + static_cast<double>(stage_.scene.distant().discs.size());
 }
 
-RayHit PathTracer::trace(const Vertex& from, const Vec3& direction, Mirrored mirrored) const {
+RayHit PathTracer::trace(const SurfacePoint& from, const Vec3& direction, Mirrored mirrored) const {
     RayHit hit;
     stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1), mirrored);
     return hit;
 }
 
-std::optional<PathTracer::Vertex> PathTracer::vertex_of(const RayHit& hit, const Vertex& from,
-                                                        const Vec3& direction) const {
+std::optional<SurfacePoint> PathTracer::vertex_of(const RayHit& hit, const SurfacePoint& from,
+                                                  const Vec3& direction) const {
     if (hit.surface.is_none() || !hit.front) return std::nullopt;
     const RegionId region = hit.region;
-    return Vertex{place_of(stage_.scene, hit, from.x, direction), stage_.scene.regions()[region].plane.n, region};
+    return SurfacePoint{place_of(stage_.scene, hit, from.x, direction), stage_.scene.regions()[region].plane.n, region};
 }
 
 /// Returns a sample of the light of all distant discs: one ray per disc, uniform in its solid angle.
-Spectrum PathTracer::light_of_discs(const Vertex& y, RandomStream& random) const {
+Spectrum PathTracer::light_of_discs(const SurfacePoint& y, RandomStream& random) const {
     Spectrum sum;
     for (const DistantLight::Disc& disc : stage_.scene.distant().discs) {
         const double u = random.uniform(), v = random.uniform(), least = std::cos(disc.half_angle);
@@ -109,7 +109,7 @@ double balance(double first, double second) {
 }  // namespace
 
 /// Weight of a shadow ray from y to `target` on a light, against the path's next ray.
-double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) const {
+double PathTracer::weight_of_shadow_ray(const SurfacePoint& y, const SurfacePoint& target) const {
     const Vec3 w = target.x - y.x;
     const double r2 = squared_norm(w), r = std::sqrt(r2), at_light = -dot(target.n, w);
     // The points may coincide, at a corner of the light.
@@ -121,7 +121,7 @@ double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) c
 }
 
 /// Direct light at y by one shadow ray, weighted against the next ray of the path, which may hit the same light.
-Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
+Spectrum PathTracer::shadow_ray(const SurfacePoint& y, RandomStream& random) const {
     if (lights_.empty()) return {};
     const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
     const auto [number, chance] = lights_.choose(y.x, y.n, pick);

@@ -19,44 +19,38 @@ namespace exitance {
 /// stage must outlive the tracer.
 class PathTracer {
   public:
-    /// A point of a path, on a surface.
-    struct Vertex {
-        Point x;
-        Normal n;
-        RegionId region;
-    };
-
     /// Result of one step of a path at a vertex.
     struct Step {
-        Spectrum direct;             ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
-        std::optional<Vertex> next;  ///< Hit of the next ray, chosen with density cos / pi; none if no front is hit.
+        Spectrum direct;  ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
+        std::optional<SurfacePoint>
+            next;  ///< Hit of the next ray, chosen with density cos / pi; none if no front is hit.
     };
 
     explicit PathTracer(const Stage& stage);
 
     /// Returns one unbiased sample of the irradiance at `probe` by light that surfaces have reflected, W/m^2. a, b in
     /// [0, 1) choose the direction of the path's first ray.
-    Spectrum path(const Vertex& probe, double a, double b, RandomStream& random) const;
+    Spectrum path(const SurfacePoint& probe, double a, double b, RandomStream& random) const;
 
     /// Casts a ray from `from` and returns the vertex where it hits a front; none if it hits nothing or a back. Panes
     /// may mirror the ray. a, b in [0, 1) choose its direction, with density cos / pi around the normal.
-    std::optional<Vertex> first(const Vertex& from, double a, double b) const;
+    std::optional<SurfacePoint> first(const SurfacePoint& from, double a, double b) const;
 
     /// Takes a step from `y`. On a diffusing pane, it starts from one of the two sides, chosen in proportion to the
     /// share of the light leaving `y` that arrived on that side.
-    Step step(const Vertex& y, RandomStream& random) const;
+    Step step(const SurfacePoint& y, RandomStream& random) const;
 
     /// Approximate number of rays per step. Rays to lights without extent and to mirror images are not counted.
     double rays_per_step() const;
 
   private:
-    RayHit trace(const Vertex& from, const Vec3& direction, Mirrored mirrored) const;
+    RayHit trace(const SurfacePoint& from, const Vec3& direction, Mirrored mirrored) const;
     /// Returns the vertex of a hit; none if nothing or a back is hit.
-    std::optional<Vertex> vertex_of(const RayHit& hit, const Vertex& from, const Vec3& direction) const;
-    Spectrum met_light(const RayHit& hit, const Vertex& from, const Vec3& direction) const;
-    Spectrum light_of_discs(const Vertex& y, RandomStream& random) const;
-    double weight_of_shadow_ray(const Vertex& y, const Vertex& target) const;
-    Spectrum shadow_ray(const Vertex& y, RandomStream& random) const;
+    std::optional<SurfacePoint> vertex_of(const RayHit& hit, const SurfacePoint& from, const Vec3& direction) const;
+    Spectrum met_light(const RayHit& hit, const SurfacePoint& from, const Vec3& direction) const;
+    Spectrum light_of_discs(const SurfacePoint& y, RandomStream& random) const;
+    double weight_of_shadow_ray(const SurfacePoint& y, const SurfacePoint& target) const;
+    Spectrum shadow_ray(const SurfacePoint& y, RandomStream& random) const;
 
     const Stage& stage_;
     LightChoice lights_;

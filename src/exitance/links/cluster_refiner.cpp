@@ -160,27 +160,25 @@ class ClusterRefiner::Judge {
         return body.element();
     }
 
-    SurfacePoint any_point(Body body, RandomStream& random) const {
+    RayEnd any_point(Body body, RandomStream& random) const {
         const ElementTree& tree = bodies_.elements();
         const ElementId e = any_member(body, random);
         const double s = random.uniform(), t = random.uniform();
         return {tree.patch(e).at(tree.uniform(e, s, t)), tree.region(e)};
     }
 
-    const Normal& normal(const SurfacePoint& p) const {
-        return bodies_.sites().stage().scene.regions()[p.region].plane.n;
-    }
+    const Normal& normal(const RayEnd& p) const { return bodies_.sites().stage().scene.regions()[p.region].plane.n; }
 
     /// Casts rays between random points of the members that face each other. Each ray is weighted with the transport
     /// along it.
     void cast(Found& pair, unsigned wanted) {
         RandomStream random(tolerance_.seed, Stream::visibility, pair.link.receiver.value(), pair.link.source.value());
-        std::vector<SurfacePoint> from, to;
+        std::vector<RayEnd> from, to;
         std::vector<double> share;
         constexpr unsigned attempts = 4;  // random pairs of points that are tried per wanted ray
         for (unsigned i = 0; i < attempts * wanted && from.size() < wanted; ++i) {
-            const SurfacePoint x = any_point(pair.link.receiver, random), y = any_point(pair.link.source, random);
-            const Vec3 d = y.at - x.at;
+            const RayEnd x = any_point(pair.link.receiver, random), y = any_point(pair.link.source, random);
+            const Vec3 d = y.x - x.x;
             const double here = dot(normal(x), d), there = -dot(normal(y), d);
             if (here <= 0 || there <= 0) continue;
             from.push_back(x), to.push_back(y);

@@ -26,7 +26,7 @@ void compare(std::vector<Face> occluding, std::uint64_t seed, Tally& tally) {
     RandomStream random(seed, Stream::direct);
     for (int i = 0; i < 20; ++i) {
         const Normal n = normalized(Vec3{0, 0, 0.6} + test::any_in_cube(random));
-        const Receiver at{Point{0, 0, -0.8} + test::any_in_cube(random), n, {}};
+        const SurfacePoint at{Point{0, 0, -0.8} + test::any_in_cube(random), n, {}};
         const double cut = visible_form_factor(occluders, at, source, scratch, VisiblePartMethod::subtraction);
         if (scratch.source.empty() || scratch.shadows.empty() || cut == 0) continue;
         const double summed = edge_sum(at.n, scratch);

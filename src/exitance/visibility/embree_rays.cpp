@@ -335,12 +335,12 @@ struct RayTracer::Content {
     }
 
     /// True if anything is between a point below a close face and another point, which is lifted off `other`.
-    bool is_blocked_in_gap(const SurfacePoint& x, double height, const SurfacePoint& other) const {
-        const double above_other = gap_height(other.at, other.region);
+    bool is_blocked_in_gap(const RayEnd& x, double height, const RayEnd& other) const {
+        const double above_other = gap_height(other.x, other.region);
         const Vec3 lifted = above_other < HUGE_VAL ? (0.5 * above_other) * scene->regions()[other.region].plane.n
                                                    : offset(other.region);
         RayHit hit;
-        trace_in_gap(x.at, other.at + lifted - x.at, x.region, height, hit);
+        trace_in_gap(x.x, other.x + lifted - x.x, x.region, height, hit);
         const bool at_end = hit.front && !other.region.is_none() && hit.region == other.region;
         return !at_end && hit.distance < 1 - end_margin;
     }
@@ -422,13 +422,13 @@ void RayTracer::Content::nearest(std::span<const Vec3> directions, const Start& 
                                  std::span<RayHit> hits, Mirrored mirrored) const {
     EXI_CHECK(hits.size() == directions.size());
     if (directions.empty()) return;
-    const auto lifted = [&](const SurfacePoint& s) { return local(s.at + offset(s.region)); };
+    const auto lifted = [&](const RayEnd& s) { return local(s.x + offset(s.region)); };
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
     valid.fill(-1);
     // Write data that all packets share only once: Embree changes only the far end and the hit.
-    const SurfacePoint shared = start(0);
-    const double shared_height = gap_height(shared.at, shared.region);
+    const RayEnd shared = start(0);
+    const double shared_height = gap_height(shared.x, shared.region);
     for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, lifted(shared), {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {
         const std::size_t count = std::min(width, directions.size() - first);
@@ -457,7 +457,7 @@ void RayTracer::Content::nearest(std::span<const Vec3> directions, const Start& 
         }
         if (mirrored == Mirrored::followed && !glass.pane_of.empty())
             follow_mirrored(
-                packet, count, [&](std::size_t i) { return start(first + i).at; }, &directions[first], &hits[first]);
+                packet, count, [&](std::size_t i) { return start(first + i).x; }, &directions[first], &hits[first]);
     }
 }
 
@@ -469,12 +469,12 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     const auto side_of = [&](const Vec3& direction) {
         return !behind.is_none() && dot(direction, content_->scene->regions()[own].plane.n) < 0 ? behind : own;
     };
-    const auto start = [&](std::size_t i) { return SurfacePoint{origins[shared ? 0 : i], side_of(directions[i])}; };
+    const auto start = [&](std::size_t i) { return RayEnd{origins[shared ? 0 : i], side_of(directions[i])}; };
     content_->nearest(directions, start, shared && behind.is_none(), hits, mirrored);
     return directions.size();
 }
 
-std::size_t RayTracer::nearest(std::span<const SurfacePoint> origins, std::span<const Vec3> directions,
+std::size_t RayTracer::nearest(std::span<const RayEnd> origins, std::span<const Vec3> directions,
                                std::span<RayHit> hits, Mirrored mirrored) const {
     EXI_CHECK(origins.size() == directions.size());
     content_->nearest(
@@ -497,7 +497,7 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
         valid.fill(0), std::fill_n(valid.begin(), count, -1);
         for (std::size_t i = 0; i < count; ++i) {
             const auto [from, to] = ends(first + i);
-            const Point a = from.at + offset(from.region), b = to.at + offset(to.region);
+            const Point a = from.x + offset(from.region), b = to.x + offset(to.region);
             set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
         }
         // Builds of Embree with assertions also check the rays of lanes that are not valid.
@@ -506,7 +506,7 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
         for (std::size_t i = 0; i < count; ++i) {
             blocked[first + i] = packet.tfar[i] < 0;
             const auto [from, to] = ends(first + i);
-            if (const double height = gap_height(from.at, from.region); height < HUGE_VAL)
+            if (const double height = gap_height(from.x, from.region); height < HUGE_VAL)
                 blocked[first + i] = is_blocked_in_gap(from, height, to);
             else if (const double height = gap_height(to.at, to.region); height < HUGE_VAL)
                 blocked[first + i] = is_blocked_in_gap(to, height, from);
@@ -519,11 +519,11 @@ std::size_t RayTracer::occluded(std::span<const Point> from, std::span<const Poi
                                 RegionId source, std::span<bool> blocked) const {
     EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
     return content_->occluded(blocked, [&](std::size_t i) {
-        return std::pair{SurfacePoint{from[i], receiver}, SurfacePoint{to[i], source}};
+        return std::pair{RayEnd{from[i], receiver}, RayEnd{to[i], source}};
     });
 }
 
-std::size_t RayTracer::occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
+std::size_t RayTracer::occluded(std::span<const RayEnd> from, std::span<const RayEnd> to,
                                 std::span<bool> blocked) const {
     EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
     return content_->occluded(blocked, [&](std::size_t i) { return std::pair{from[i], to[i]}; });

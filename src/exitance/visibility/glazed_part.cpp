@@ -34,7 +34,7 @@ std::vector<Vec3> cut_above(std::span<const Vec3> polygon, const Vec3& n, double
 /// Planes (pointing inwards) through the receiver and the edges of the part of a pane between the receiver and the
 /// source, or of all of the pane if `source_plane` is null; empty if no line of sight crosses the pane.
 /// source_plane  plane of the source, relative to the receiver
-std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Plane* source_plane, double rounding) {
+std::vector<Vec3> pyramid_over(const Pane& pane, const SurfacePoint& at, const Plane* source_plane, double rounding) {
     const double facing = dot(pane.n, pane.corners[0] - at.x);
     if (std::abs(facing) <= rounding) return {};
     std::vector<Vec3> polygon;
@@ -186,7 +186,8 @@ struct PaneInView {
 
 /// The panes between a receiver and a source. `height`: offset of the source's plane along its normal n, relative to
 /// the receiver.
-std::vector<PaneInView> panes_in_view(const Occluders& occluders, const Receiver& at, const Normal& n, double height) {
+std::vector<PaneInView> panes_in_view(const Occluders& occluders, const SurfacePoint& at, const Normal& n,
+                                      double height) {
     std::vector<PaneInView> out;
     const double slack = occluders.rounding();
     const Plane source_plane{n, height + slack};
@@ -197,7 +198,7 @@ std::vector<PaneInView> panes_in_view(const Occluders& occluders, const Receiver
 }
 
 /// The panes that light through a window has to pass on its way to a receiver, on either side of the window.
-std::vector<PaneInView> panes_besides(const Occluders& occluders, const Receiver& at, PieceId window) {
+std::vector<PaneInView> panes_besides(const Occluders& occluders, const SurfacePoint& at, PieceId window) {
     std::vector<PaneInView> out;
     std::vector<Vec3> corners;
     for (const Point& p : occluders.corners(window)) corners.push_back(p - at.x);
@@ -216,7 +217,7 @@ std::vector<Part> parts_behind(std::span<const PaneInView> panes, std::span<cons
     return parts;
 }
 
-Spectrum through_panes(const Receiver& at, std::span<const PaneInView> panes, std::span<const Vec3> visible,
+Spectrum through_panes(const SurfacePoint& at, std::span<const PaneInView> panes, std::span<const Vec3> visible,
                        const RelativeRadiance& radiance) {
     if (visible.size() < 3 || is_sliver(visible)) return {};
     const GlazedSum sum(at.n, radiance);
@@ -227,14 +228,14 @@ Spectrum through_panes(const Receiver& at, std::span<const PaneInView> panes, st
 
 }  // namespace
 
-Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+Spectrum transmitted_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
                                  std::span<const Vec3> visible, const RelativeRadiance& radiance) {
     if (visible.size() < 3) return {};
     const Normal& n = occluders.pieces()[source].plane.n;
     return through_panes(at, panes_in_view(occluders, at, n, dot(n, visible[0])), visible, radiance);
 }
 
-Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+Spectrum glazed_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
                             std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                             const PartLight& light) {
     // Every fragment is cut along the panes in view and integrated; the search tests every pane. Derived from the time
@@ -303,8 +304,8 @@ Spectrum colour_between(std::span<const Pane> panes, const Point& x, const Point
     return out;
 }
 
-void add_form_factors_through(const PaneGroups& groups, const Occluders& occluders, const Receiver& at, PieceId source,
-                              std::span<const Vec3> visible, std::span<Spectrum> out) {
+void add_form_factors_through(const PaneGroups& groups, const Occluders& occluders, const SurfacePoint& at,
+                              PieceId source, std::span<const Vec3> visible, std::span<Spectrum> out) {
     if (visible.size() < 3 || is_sliver(visible)) return;
     const Normal& n = occluders.pieces()[source].plane.n;
     const RelativeRadiance diffuse;

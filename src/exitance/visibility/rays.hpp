@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "exitance/scene/scene.hpp"
+#include "exitance/scene/surface_point.hpp"
 
 namespace exitance {
 
@@ -38,12 +38,6 @@ inline Vec3 arriving(const Scene& scene, const RayHit& hit, const Vec3& directio
     const Normal& n = scene.panes()[static_cast<std::size_t>(hit.mirror)].n;
     return direction - 2 * dot(n, direction) * n;
 }
-
-/// A point of a region, or of free space if the region is none.
-struct SurfacePoint {
-    Point at;
-    RegionId region;
-};
 
 /// Sixteen ray end points, already lifted off their surfaces, in the tracer's coordinates: relative to the middle of
 /// the scene's box, metres times the power of two that makes the scene about 1 wide, rotated (TracingFrame).
@@ -79,7 +73,7 @@ class RayTracer {
                         std::span<RayHit> hits, Mirrored mirrored = Mirrored::lost) const;
 
     /// Like the above, from points of any regions. From a diffusing pane, rays start on the side of the given region.
-    std::size_t nearest(std::span<const SurfacePoint> origins, std::span<const Vec3> directions, std::span<RayHit> hits,
+    std::size_t nearest(std::span<const RayEnd> origins, std::span<const Vec3> directions, std::span<RayHit> hits,
                         Mirrored mirrored = Mirrored::lost) const;
 
     /// Tests for occlusion: blocked[i] is set to whether anything is between from[i] on region `receiver` and to[i] on
@@ -89,8 +83,7 @@ class RayTracer {
                          std::span<bool> blocked) const;
 
     /// Like the above, between points of any regions.
-    std::size_t occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
-                         std::span<bool> blocked) const;
+    std::size_t occluded(std::span<const RayEnd> from, std::span<const RayEnd> to, std::span<bool> blocked) const;
 
     /// Converts sixteen points of a region for the occluded() below.
     RayEnds ray_ends(std::span<const Point> points, RegionId region) const;

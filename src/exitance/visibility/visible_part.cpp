@@ -48,7 +48,7 @@ void clip_in_place(std::vector<Vec3>& polygon, const Normal& n, double offset, W
 }
 
 /// Stores in scratch.source the source relative to x, clipped to x's horizon; empty if none of it can be visible.
-void look_at_source(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+void look_at_source(const Occluders& occluders, const SurfacePoint& at, PieceId source, Workspace& scratch) {
     scratch.source.clear();
     const ConvexPiece& piece = occluders.pieces()[source];
     const std::span<const Point> corners = occluders.corners(source);
@@ -73,7 +73,7 @@ void make_pyramid(Workspace& scratch) {
 
 /// Stores in scratch.region the pyramid from x over the source, bounded by the receiver's and the source's planes. For
 /// a window with faces outside it continues past the pane.
-void make_region(const Occluders& occluders, const Receiver& at, PieceId source, Workspace& scratch) {
+void make_region(const Occluders& occluders, const SurfacePoint& at, PieceId source, Workspace& scratch) {
     const double slack = occluders.rounding();
     const auto above = [&](const Vec3& n, double height) { return Plane{n, dot(n, at.x) + height}; };
     scratch.region.clear();
@@ -111,7 +111,7 @@ double rough_solid_angle(std::span<const Vec3> polygon, double distance_of_plane
 }
 
 /// Returns whether a region of several pieces (such as a wall with a door) hides the whole source.
-bool region_hides_everything(const Occluders& occluders, const Receiver& at, RegionId region, Workspace& scratch) {
+bool region_hides_everything(const Occluders& occluders, const SurfacePoint& at, RegionId region, Workspace& scratch) {
     if (std::find(scratch.uncovering.begin(), scratch.uncovering.end(), region) != scratch.uncovering.end())
         return false;
     scratch.cover.begin(occluders.scene().regions()[region], occluders.rounding());
@@ -125,11 +125,11 @@ bool region_hides_everything(const Occluders& occluders, const Receiver& at, Reg
 /// Returns how much of the source a candidate hides. If it is some of it, adds the pyramid over the part of the
 /// candidate between the planes of the source and the receiver to the shadows. `all_the_way`: the source is a window,
 /// and pieces behind its pane hide it, too.
-Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, bool all_the_way,
+Hides add_shadow(const Occluders& occluders, const SurfacePoint& at, const ConvexPiece& source, bool all_the_way,
                  PieceId candidate, Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
     ++scratch.work;
-    if (occluders.is_own(piece.region, at.own) || piece.region == source.region) return Hides::nothing;
+    if (occluders.is_own(piece.region, at.region) || piece.region == source.region) return Hides::nothing;
     const std::span<const Point> corners = occluders.corners(candidate);
     const double facing = dot(piece.plane.n, at.x - corners[0]);
     if (std::abs(facing) <= occluders.rounding()) return Hides::nothing;  // seen edge-on
@@ -245,12 +245,12 @@ void clear_shadows(Workspace& scratch) {
 }
 
 /// Form factor to the visible part of scratch.source, with occluders from the tree.
-double part_among_all(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
+double part_among_all(const Occluders& occluders, const SurfacePoint& at, PieceId source, VisibilityWorkspace& scratch,
                       const PartLight& light, Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
     // Surfaces on the scene's hull never occlude.
-    const bool in_scene = !at.own.is_none() && !occluders.is_distant(source);
+    const bool in_scene = !at.region.is_none() && !occluders.is_distant(source);
     if (in_scene && occluders.has_nothing_inside())
         return finish(occluders, source, at.n, 0, scratch, light, fragments);
     make_pyramid(scratch);
@@ -282,8 +282,9 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     return finish(occluders, source, at.n, large > 1 ? large : 0, scratch, light, fragments);
 }
 
-double part_among(const Occluders& occluders, const Receiver& at, PieceId source, std::span<const PieceId> candidates,
-                  VisibilityWorkspace& scratch, const PartLight& light, Fragments* fragments = nullptr) {
+double part_among(const Occluders& occluders, const SurfacePoint& at, PieceId source,
+                  std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light,
+                  Fragments* fragments = nullptr) {
     clear_shadows(scratch);
     if (scratch.source.empty()) return 0;
     if (candidates.empty()) return finish(occluders, source, at.n, 0, scratch, light, fragments);
@@ -298,21 +299,21 @@ double part_among(const Occluders& occluders, const Receiver& at, PieceId source
 
 }  // namespace
 
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                           const PartLight& light) {
+double visible_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
+                           VisibilityWorkspace& scratch, const PartLight& light) {
     ++scratch.work;
     if (scratch.gave_up()) return 0;
     look_at_source(occluders, at, source, scratch);
     return part_among_all(occluders, at, source, scratch, light);
 }
 
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+double visible_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
                            std::span<const PieceId> candidates, VisibilityWorkspace& scratch, const PartLight& light) {
     look_at_source(occluders, at, source, scratch);
     return part_among(occluders, at, source, candidates, scratch, light);
 }
 
-void visible_fragments(const Occluders& occluders, const Receiver& at, PieceId source,
+void visible_fragments(const Occluders& occluders, const SurfacePoint& at, PieceId source,
                        std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                        Fragments& out) {
     out.clear();

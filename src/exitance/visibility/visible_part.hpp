@@ -8,18 +8,12 @@
 
 #include "exitance/base/bvh.hpp"
 #include "exitance/base/vec.hpp"
+#include "exitance/scene/surface_point.hpp"
 #include "exitance/visibility/lit_part.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/shaft.hpp"
 
 namespace exitance {
-
-/// A point that receives light. Its own region neither shades it nor counts as an occluder.
-struct Receiver {
-    Point x;       ///< Metres.
-    Normal n;      ///< Unit length.
-    RegionId own;  ///< The region that contains it, or none (free space).
-};
 
 /// Scratch memory of the functions below. Use one object per thread and reuse it, so that queries do not allocate.
 class VisibilityWorkspace {
@@ -105,12 +99,12 @@ struct PartLight {
 /// The source is clipped by the planes through x and the occluders' edges, and the parts inside an occluder's pyramid
 /// are removed. Source: [Nishita85], as polygon subtraction. O(f k) for k occluders in the pyramid over the source and
 /// f fragments.
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
-                           const PartLight& light = {});
+double visible_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
+                           VisibilityWorkspace& scratch, const PartLight& light = {});
 
 /// Like the above, with given occluders: all pieces that may reach into the pyramid, in any order. Other pieces,
 /// including those of the receiver's and the source's own regions, do no harm.
-double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
+double visible_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
                            std::span<const PieceId> candidates, VisibilityWorkspace& scratch,
                            const PartLight& light = {});
 

@@ -148,8 +148,8 @@ TEST(SurfacePool, IsUniformAndItsBlocksAreCompact) {
     const SurfacePool pool(stage, 4096, 1);
     ASSERT_EQ(pool.size(), 4096u);
     std::vector<double> area(scene.regions().size());
-    for (const PoolPoint& p : pool.points()) {
-        EXPECT_NEAR(scene.regions()[p.region].plane.signed_distance(p.at), 0, 1e-9);
+    for (const SurfacePoint& p : pool.points()) {
+        EXPECT_NEAR(scene.regions()[p.region].plane.signed_distance(p.x), 0, 1e-9);
         area[p.region.value] += pool.area_each();
     }
     for (const RegionId r : scene.regions().ids())
@@ -157,7 +157,7 @@ TEST(SurfacePool, IsUniformAndItsBlocksAreCompact) {
                     2 * pool.area_each());  // sampling is systematic, so the areas agree to a sample or two
     int far = 0, all = 0;
     for (std::uint32_t i = 0; i < pool.size(); i += 17, ++all)
-        far += norm(pool[pool.near(i, 0.1, 0.99)].at - pool[i].at) > 0.4;
+        far += norm(pool[pool.near(i, 0.1, 0.99)].x - pool[i].x) > 0.4;
     EXPECT_LT(far, all / 5);  // blocks that span two faces are longer
 }
 

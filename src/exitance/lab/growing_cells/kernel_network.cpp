@@ -38,14 +38,14 @@ double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Nor
 KernelNetwork::KernelNetwork(const Stage& stage, const SurfacePool& pool, const KernelNetworkOptions& options,
                              std::span<const Spectrum> radiosity)
     : stage_(stage), pool_(pool), options_(options) {
-    const auto all = [](const PoolPoint&) { return true; };
+    const auto all = [](const SurfacePoint&) { return true; };
     is_receiver_ = all, is_source_ = all;
     renew(radiosity);
     restrict_to(all, all);
 }
 
-void KernelNetwork::restrict_to(std::function<bool(const PoolPoint&)> is_receiver,
-                                std::function<bool(const PoolPoint&)> is_source) {
+void KernelNetwork::restrict_to(std::function<bool(const SurfacePoint&)> is_receiver,
+                                std::function<bool(const SurfacePoint&)> is_source) {
     is_receiver_ = std::move(is_receiver), is_source_ = std::move(is_source);
     receivers_.clear();
     for (std::uint32_t i = 0; i < pool_.size(); ++i)
@@ -73,12 +73,12 @@ std::uint32_t KernelNetwork::draw_source(double u) const {
 }
 
 double KernelNetwork::kernel(const Sample& s) const {
-    return point_kernel(pool_[s.x].at, pool_[s.x].n, pool_[s.y].at, pool_[s.y].n, pool_.in_plane());
+    return point_kernel(pool_[s.x].x, pool_[s.x].n, pool_[s.y].x, pool_[s.y].n, pool_.in_plane());
 }
 Spectrum KernelNetwork::flow(const Sample& s) const {
     double G = s.visible ? kernel(s) : 0;
     if (G > 0 && options_.min_area > 0) {
-        const double disc = pi * squared_norm(pool_[s.x].at - pool_[s.y].at);
+        const double disc = pi * squared_norm(pool_[s.x].x - pool_[s.y].x);
         G *= disc / (disc + options_.min_area);
     }
     return G * radiosity_[s.y];
@@ -93,7 +93,7 @@ std::vector<double> KernelNetwork::coordinates(const Point& x, const Normal& n_x
     return out;
 }
 std::vector<double> KernelNetwork::coordinates(const Sample& s) const {
-    return coordinates(pool_[s.x].at, pool_[s.x].n, pool_[s.y].at, pool_[s.y].n);
+    return coordinates(pool_[s.x].x, pool_[s.x].n, pool_[s.y].x, pool_[s.y].n);
 }
 
 /// Draws pairs that face each other. A share of them are drawn near the last sample that a unit won, with units chosen
@@ -128,10 +128,10 @@ void KernelNetwork::draw(std::size_t count, std::vector<Sample>& out) {
         }
         if (kernel(s) > 0) out.push_back(s);
     }
-    std::vector<SurfacePoint> from, to;
+    std::vector<RayEnd> from, to;
     for (const Sample& s : out) {
-        from.push_back({pool_[s.x].at, pool_[s.x].region});
-        to.push_back({pool_[s.y].at, pool_[s.y].region});
+        from.push_back({pool_[s.x].x, pool_[s.x].region});
+        to.push_back({pool_[s.y].x, pool_[s.y].region});
     }
     const std::unique_ptr<bool[]> blocked(new bool[out.size()]);
     constexpr std::size_t packet = 64;

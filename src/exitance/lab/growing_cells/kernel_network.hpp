@@ -54,8 +54,8 @@ class KernelNetwork {
                   std::span<const Spectrum> radiosity);
 
     /// Restricts the points where rays may start (y) and end (x). Default: all. Must be called before `grow`.
-    void restrict_to(std::function<bool(const PoolPoint&)> is_receiver,
-                     std::function<bool(const PoolPoint&)> is_source);
+    void restrict_to(std::function<bool(const SurfacePoint&)> is_receiver,
+                     std::function<bool(const SurfacePoint&)> is_source);
 
     /// Learns samples and inserts units until there are `units` of them, or until `stop` is requested. Returns false if
     /// no samples can be drawn.
@@ -122,7 +122,7 @@ class KernelNetwork {
     std::vector<Spectrum> radiosity_;
     std::vector<double> source_sum_;  ///< Running sum of the density of sources over the pool.
     std::vector<std::uint32_t> receivers_;
-    std::function<bool(const PoolPoint&)> is_receiver_, is_source_;
+    std::function<bool(const SurfacePoint&)> is_receiver_, is_source_;
     std::unique_ptr<GrowingCells> cells_;
     std::vector<Sample> samples_;
     std::vector<std::uint32_t> last_won_;  ///< Per unit: index of the last sample that it won.

@@ -162,7 +162,7 @@ std::vector<Spectrum> reflected_radiosity(const Stage& stage, const SurfacePool&
     std::vector<Spectrum> out(pool.size());
     parallel_for(pool.size(), 64, [&](std::size_t i) {
         const Spectrum& rho = stage.scene.material(pool[i].region).reflectance;
-        if (max(rho) > 0) out[i] = rho * E.at(pool[i].at, pool[i].n);
+        if (max(rho) > 0) out[i] = rho * E.at(pool[i].x, pool[i].n);
     });
     return out;
 }
@@ -241,8 +241,8 @@ void learn_reflections(const MethodInput& input, const SurfacePool& pool, std::s
 LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     const Stage& stage = input.stage;
     const std::size_t units = units_of(stage, input.knobs, input.options);
-    const auto emits = [&](const PoolPoint& p) { return stage.scene.material(p.region).emits(); };
-    const auto everything = [](const PoolPoint&) { return true; };
+    const auto emits = [&](const SurfacePoint& p) { return stage.scene.material(p.region).emits(); };
+    const auto everything = [](const SurfacePoint&) { return true; };
     std::vector<Spectrum> M(pool.size());
     for (std::size_t i = 0; i < pool.size(); ++i) M[i] = stage.scene.material(pool[i].region).exitance;
     KernelNetworkOptions options{.target = KernelTarget::flow, .uniform_sources = 0, .seed = input.options.seed};
@@ -253,7 +253,7 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     options.min_area = stage.area / std::sqrt(static_cast<double>(units));
     options.uniform_sources = 0.2;
     KernelNetwork reflected(stage, pool, options, M);
-    reflected.restrict_to(everything, [&](const PoolPoint& p) { return !emits(p); });
+    reflected.restrict_to(everything, [&](const SurfacePoint& p) { return !emits(p); });
     LearnedLight out;
     out.light.normalised = false;
     input.progress.phase("grow");

@@ -52,12 +52,12 @@ Nodes make_nodes(const Stage& stage, const SurfacePool& pool, const ShadingNetwo
     parallel_ranges(out.point.size(), 32, [&](std::size_t begin, std::size_t end) {
         PlaceLight::Workspace workspace;
         for (std::size_t i = begin; i < end; ++i) {
-            const PoolPoint& p = pool[out.point[i]];
+            const SurfacePoint& p = pool[out.point[i]];
             const Spectrum& rho = stage.scene.material(p.region).reflectance;
             out.reflectance[i] = rho;
-            if (max(rho) <= 0 || stage.occluders.is_covered(p.at, p.n, p.region)) continue;
+            if (max(rho) <= 0 || stage.occluders.is_covered(p.x, p.n, p.region)) continue;
             const LightAccuracy accuracy = point_accuracy(direct_accuracy);
-            out.reflected_direct[i] = rho * stage.place_light.at(p.at, p.n, p.region, accuracy, workspace).irradiance;
+            out.reflected_direct[i] = rho * stage.place_light.at(p.x, p.n, p.region, accuracy, workspace).irradiance;
         }
     });
     for (std::size_t c = 0; c < cells; ++c) {
@@ -84,8 +84,8 @@ struct Sent {
 Sent send(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& network, const Nodes& nodes, std::size_t q,
           const CellLight::Cell& receiver) {
     Sent out;
-    const auto factor = [&](const PoolPoint& y, double area) {
-        const Vec3 w = y.at - receiver.at;
+    const auto factor = [&](const SurfacePoint& y, double area) {
+        const Vec3 w = y.x - receiver.at;
         const double r2 = squared_norm(w), a = dot(w, receiver.n), b = -dot(w, y.n);
         return a > pool.in_plane() && b > pool.in_plane() ? area * a * b / (r2 * (pi * r2 + area)) : 0;
     };
@@ -124,8 +124,8 @@ class PairRays {
         };
         pairs_.push_back(q);
         for (std::size_t k = 0; k < rays_per_pair; ++k) {
-            const PoolPoint x = any(p), y = any(q);
-            from_.push_back({x.at, x.region}), to_.push_back({y.at, y.region});
+            const SurfacePoint x = any(p), y = any(q);
+            from_.push_back({x.x, x.region}), to_.push_back({y.x, y.region});
         }
     }
     /// Calls visit(q, unblocked share of the rays) for every pair.
@@ -148,7 +148,7 @@ class PairRays {
     const Nodes& nodes_;
     std::uint64_t seed_;
     std::vector<std::size_t> pairs_;
-    std::vector<SurfacePoint> from_, to_;
+    std::vector<RayEnd> from_, to_;
 };
 
 CellTransport make_transport(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& network,
@@ -191,11 +191,11 @@ class PassedToCells {
         parallel_for(own_.size(), 16, [&](std::size_t c) {
             const std::uint32_t first = nodes.first[c], last = nodes.first[c + 1];
             for (std::uint32_t j = first; j < last; ++j) {
-                const PoolPoint& p = pool[nodes.point[j]];
+                const SurfacePoint& p = pool[nodes.point[j]];
                 const RegionId behind = stage.scene.behind(p.region);
                 if (behind.is_none() || of_region[behind].empty()) continue;
                 const auto is_nearer = [&](std::uint32_t a, std::uint32_t b) {
-                    return squared_norm(pool[a].at - p.at) < squared_norm(pool[b].at - p.at);
+                    return squared_norm(pool[a].x - p.x) < squared_norm(pool[b].x - p.x);
                 };
                 const std::vector<std::uint32_t>& there = of_region[behind];
                 const double share = stage.scene.material(p.region).through / (last - first);

@@ -20,8 +20,8 @@ constexpr int max_rounds = 3;
 constexpr double min_normal_length = 0.9;  ///< Length of the mean normal below which a cell is on a fold.
 constexpr double width_by_area = 1.0;      ///< Width of a cell relative to the square root of its area.
 
-std::array<double, 6> coordinates(const PoolPoint& p, double scale) {
-    return {p.at.x, p.at.y, p.at.z, scale * p.n.x, scale * p.n.y, scale * p.n.z};
+std::array<double, 6> coordinates(const SurfacePoint& p, double scale) {
+    return {p.x.x, p.x.y, p.x.z, scale * p.n.x, scale * p.n.y, scale * p.n.z};
 }
 
 /// The unit nearest to every point.
@@ -41,7 +41,7 @@ std::vector<UnitWins> gather(const SurfacePool& pool, const std::vector<GrowingC
     std::vector<UnitWins> out(units);
     for (std::size_t i = 0; i < pool.size(); ++i) {
         UnitWins& g = out[won[i]];
-        g.place += pool[i].at, g.normal += pool[i].n, g.count += 1;
+        g.place += pool[i].x, g.normal += pool[i].n, g.count += 1;
     }
     return out;
 }
@@ -65,10 +65,10 @@ double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::v
 
 /// Moves a cell onto its surfaces if it won points of several parallel ones, so that their mean lies between them. A
 /// cell that hovers has hardly any mass on a surface, and the system of the outputs would give it a huge one.
-void put_on_surface(const PoolPoint& nearest, CellLight::Cell& cell) {
+void put_on_surface(const SurfacePoint& nearest, CellLight::Cell& cell) {
     constexpr double max_height = 0.1;  // derived from a weight of exp(-0.01) at the foot; relative to the width
-    if (std::abs(dot(nearest.n, cell.at - nearest.at)) > max_height * cell.width)
-        cell.at = nearest.at, cell.n = nearest.n;
+    if (std::abs(dot(nearest.n, cell.at - nearest.x)) > max_height * cell.width)
+        cell.at = nearest.x, cell.n = nearest.n;
 }
 
 /// Index of the point nearest to the mean of those that each unit has won.
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> nearest_won(const SurfacePool& pool, const std::vecto
     std::vector<double> least(gathered.size(), HUGE_VAL);
     for (std::uint32_t i = 0; i < pool.size(); ++i) {
         const GrowingCells::Unit u = won[i];
-        const double d = squared_norm(pool[i].at - gathered[u].place / gathered[u].count);
+        const double d = squared_norm(pool[i].x - gathered[u].place / gathered[u].count);
         if (d < least[u]) least[u] = d, out[u] = i;
     }
     return out;
@@ -151,7 +151,7 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
         if (by_edges) put_on_surface(pool[nearest[u]], out.cells.back());
     }
     if (out.cells.empty()) {  // Every unit is on a fold, as in a very small scene: use a single cell.
-        out.cells.push_back({pool[0].at, pool[0].n, std::sqrt(pool.area()), {}, {}});
+        out.cells.push_back({pool[0].x, pool[0].n, std::sqrt(pool.area()), {}, {}});
     }
     // Points of removed units go to the nearest cell in position and normal.
     out.cell_of.resize(pool.size());
@@ -161,7 +161,7 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
         double least = HUGE_VAL;
         for (std::uint32_t c = 0; c < out.cells.size(); ++c) {
             const Vec3 turn = out.cells[c].n - pool[i].n;
-            const double d = squared_norm(out.cells[c].at - pool[i].at) + scale * scale * squared_norm(turn);
+            const double d = squared_norm(out.cells[c].at - pool[i].x) + scale * scale * squared_norm(turn);
             if (d < least) least = d, out.cell_of[i] = c;
         }
     });

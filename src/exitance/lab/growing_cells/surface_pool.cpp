@@ -12,8 +12,8 @@ namespace {
 /// Length that a unit difference of normals counts as, relative to the scene's size.
 constexpr double pool_turn_by_size = 0.5;
 
-double coordinate(const PoolPoint& p, std::size_t axis, double normal_scale) {
-    return axis < 3 ? p.at[axis] : normal_scale * p.n[axis - 3];
+double coordinate(const SurfacePoint& p, std::size_t axis, double normal_scale) {
+    return axis < 3 ? p.x[axis] : normal_scale * p.n[axis - 3];
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ void SurfacePool::sort(std::size_t first, std::size_t count, double normal_scale
     const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto half = static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(begin, begin + half, begin + static_cast<std::ptrdiff_t>(count),
-                     [&](const PoolPoint& a, const PoolPoint& b) {
+                     [&](const SurfacePoint& a, const SurfacePoint& b) {
                          return coordinate(a, widest, normal_scale) < coordinate(b, widest, normal_scale);
                      });
     sort(first, count / 2, normal_scale);

@@ -7,13 +7,6 @@
 
 namespace exitance {
 
-/// A surface point from which samples of growing cells are drawn.
-struct PoolPoint {
-    Point at;
-    Normal n;
-    RegionId region;
-};
-
 /// Points spread evenly over all surfaces, ordered so that aligned blocks of 2^j points are close in position and
 /// normal. Points drawn near another one are thus on the surfaces again, however these are divided into polygons: a
 /// network that learns from the pool depends on their shape only.
@@ -23,8 +16,8 @@ class SurfacePool {
     /// Sides of surfaces that no light reaches are omitted. O(count log count + pieces).
     SurfacePool(const Stage& stage, std::size_t count, std::uint64_t seed);
 
-    const std::vector<PoolPoint>& points() const { return points_; }
-    const PoolPoint& operator[](std::size_t i) const { return points_[i]; }
+    const std::vector<SurfacePoint>& points() const { return points_; }
+    const SurfacePoint& operator[](std::size_t i) const { return points_[i]; }
     std::size_t size() const { return points_.size(); }
     double area() const { return area_; }                                             ///< m^2
     double area_each() const { return area_ / static_cast<double>(points_.size()); }  ///< m^2
@@ -39,7 +32,7 @@ class SurfacePool {
   private:
     void sort(std::size_t first, std::size_t count, double normal_scale);
 
-    std::vector<PoolPoint> points_;
+    std::vector<SurfacePoint> points_;
     double area_ = 0, in_plane_ = 0;
 };
 

@@ -15,7 +15,7 @@ namespace exitance {
 namespace {
 
 struct Pair {
-    PoolPoint x, y;
+    SurfacePoint x, y;
     Spectrum truth;
     double kernel;
 };
@@ -36,17 +36,17 @@ std::vector<Pair> make_pairs(const Stage& stage, std::size_t count, bool of_emit
         std::size_t i = 0;
         while (i + 1 < pieces.size() && left >= pieces[i].patch.area()) left -= pieces[i].patch.area(), ++i;
         const double s = random.uniform(), t = random.uniform();
-        return PoolPoint{pieces[i].patch.at(uniform_in_shape(pieces[i].patch.shape, s, t)),
-                         stage.scene.regions()[pieces[i].region].plane.n, pieces[i].region};
+        return SurfacePoint{pieces[i].patch.at(uniform_in_shape(pieces[i].patch.shape, s, t)),
+                            stage.scene.regions()[pieces[i].region].plane.n, pieces[i].region};
     };
     std::vector<Pair> out;
-    std::vector<SurfacePoint> a, b;
+    std::vector<RayEnd> a, b;
     for (std::size_t tries = 0; out.size() < count && tries < 100 * count; ++tries) {
         Pair p{draw(from), draw(to), {}, 0};
-        p.kernel = point_kernel(p.x.at, p.x.n, p.y.at, p.y.n);
+        p.kernel = point_kernel(p.x.x, p.x.n, p.y.x, p.y.n);
         if (!(p.kernel > 0)) continue;
         out.push_back(p);
-        a.push_back({p.x.at, p.x.region}), b.push_back({p.y.at, p.y.region});
+        a.push_back({p.x.x, p.x.region}), b.push_back({p.y.x, p.y.region});
     }
     const std::unique_ptr<bool[]> blocked(new bool[out.size()]);
     if (!out.empty()) stage.tracer.occluded(a, b, {blocked.get(), out.size()});
@@ -113,7 +113,7 @@ class LinkedKernel {
                 for (std::uint32_t i = 0; i < 4; ++i) {
                     const Link& c = links_[first + i];
                     const double in =
-                        inside(elements_[links_[at].cut_x ? c.x : c.y].patch, links_[at].cut_x ? p.x.at : p.y.at);
+                        inside(elements_[links_[at].cut_x ? c.x : c.y].patch, links_[at].cut_x ? p.x.x : p.y.x);
                     if (in > best) best = in, child = i;
                 }
                 at = first + child;
@@ -142,8 +142,8 @@ class LinkedKernel {
         return patch.is_triangle() ? std::min({uv.x, uv.y, 1 - uv.x - uv.y})
                                    : std::min({uv.x, uv.y, 1 - uv.x, 1 - uv.y});
     }
-    static bool holds(const Element& e, const PoolPoint& p) {
-        return e.region == p.region && inside(e.patch, p.at) > -1e-9;
+    static bool holds(const Element& e, const SurfacePoint& p) {
+        return e.region == p.region && inside(e.patch, p.x) > -1e-9;
     }
     std::uint32_t split(std::uint32_t e) {
         if (elements_[e].children) return *elements_[e].children;
@@ -209,9 +209,9 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
     }
     const SurfacePool pool(stage, 1 << 15, seed);
     std::vector<Spectrum> light;
-    for (const PoolPoint& p : pool.points())
+    for (const SurfacePoint& p : pool.points())
         light.push_back(of_emitters ? stage.scene.material(p.region).exitance : Spectrum(1));
-    const auto emits = [&](const PoolPoint& p) { return stage.scene.material(p.region).emits(); };
+    const auto emits = [&](const SurfacePoint& p) { return stage.scene.material(p.region).emits(); };
     for (const KernelTarget target : {KernelTarget::flow, KernelTarget::visibility}) {
         const bool flow = target == KernelTarget::flow;
         KernelNetwork network(stage, pool,
@@ -220,15 +220,15 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
                                .uniform_sources = of_emitters ? 0.0 : 1.0,
                                .seed = seed},
                               light);
-        network.restrict_to([&](const PoolPoint& p) { return of_emitters || !emits(p); },
-                            [&](const PoolPoint& p) { return emits(p) == of_emitters; });
+        network.restrict_to([&](const SurfacePoint& p) { return of_emitters || !emits(p); },
+                            [&](const SurfacePoint& p) { return emits(p) == of_emitters; });
         double grown = 0;
         for (const std::size_t n : counts) {
             Stopwatch watch;
             if (!network.grow(n, stop)) return;
             grown += watch.restart();
             const auto answer = [&](const Pair& p) {
-                const Spectrum a = network.evaluate(p.x.at, p.x.n, p.y.at, p.y.n);
+                const Spectrum a = network.evaluate(p.x.x, p.x.n, p.y.x, p.y.n);
                 return flow ? a : a * (p.kernel * emission(p));
             };
             const std::size_t bytes = network.bytes_a_unit() * network.cells().unit_count();

@@ -21,7 +21,7 @@ DaylightGlare find_daylight_glare(const RadiosityFunction& light, const Observer
     const Observer observer = off_walls(light, at);
     const ProbePoint plane{observer.eye, observer.view};
     DaylightGlare out;
-    const Receiver eye{observer.eye, observer.view, RegionId()};
+    const SurfacePoint eye{observer.eye, observer.view, RegionId()};
     const FieldOfView view(light, eye, lux);
     out.vertical_illuminance =
         lux(light.at(std::span(&plane, 1), Component::direct)[0].irradiance) + view.reflected_illuminance();

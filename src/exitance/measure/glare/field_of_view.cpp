@@ -23,7 +23,7 @@ bool is_point_opening(const Surface& surface) {
 
 }  // namespace
 
-FieldOfView::FieldOfView(const RadiosityFunction& light, const Receiver& eye, const LightUnit& lux)
+FieldOfView::FieldOfView(const RadiosityFunction& light, const SurfacePoint& eye, const LightUnit& lux)
     : light_(light), eye_(eye), lux_(lux) {
     for (const std::string& group : light.solution().scene.groups()) names_.push_back(group);
     add_surfaces(), add_sky(), add_lights();

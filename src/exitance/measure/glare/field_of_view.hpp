@@ -21,7 +21,7 @@ namespace exitance {
 class FieldOfView {
   public:
     /// `eye`: not on a surface. All arguments must outlive this object. O(pieces + parts): about 1 s for a room.
-    FieldOfView(const RadiosityFunction& light, const Receiver& eye, const LightUnit& lux);
+    FieldOfView(const RadiosityFunction& light, const SurfacePoint& eye, const LightUnit& lux);
 
     /// Returns the mean luminance of the half of the directions in front of the eye, cd/m^2.
     double mean_luminance() const { return mean_; }
@@ -55,7 +55,7 @@ class FieldOfView {
     GlarePart part_of(const ViewTriangle& t, SurfaceId s, double luminance) const;
 
     const RadiosityFunction& light_;
-    const Receiver& eye_;
+    const SurfacePoint& eye_;
     const LightUnit& lux_;
     std::vector<std::string> names_;  ///< Groups of the scene first.
     std::vector<SurfaceTriangle> surfaces_;

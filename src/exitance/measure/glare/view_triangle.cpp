@@ -62,7 +62,7 @@ void add_view_triangles(std::span<const Vec3> polygon, double max_extent, std::v
     }
 }
 
-std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const Receiver& eye,
+std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const SurfacePoint& eye,
                                                          std::span<const PieceId> pieces, double max_extent) {
     std::vector<std::vector<ViewTriangle>> out(pieces.size());
     parallel_ranges(pieces.size(), 16, [&](std::size_t begin, std::size_t end) {

@@ -32,7 +32,7 @@ struct ViewTriangle {
 void add_view_triangles(std::span<const Vec3> polygon, double max_extent, std::vector<ViewTriangle>& out);
 
 /// Returns triangles of at most this extent that cover the visible part of each piece, one list per piece.
-std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const Receiver& eye,
+std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const SurfacePoint& eye,
                                                          std::span<const PieceId> pieces, double max_extent);
 
 }  // namespace exitance

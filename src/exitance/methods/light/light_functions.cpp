@@ -87,7 +87,7 @@ DeliveredLight::DeliveredLight(const Scene& scene, const ElementFunction& indire
       direct_weight_(direct_weight),
       c_(c) {}
 
-void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
+void DeliveredLight::read(std::span<const RayEnd> hits, std::span<Spectrum> values) const {
     constexpr std::size_t batch_size = 64;
     std::array<Spectrum, batch_size> direct;
     indirect_.read(hits, values);

@@ -67,7 +67,7 @@ class DeliveredLight final : public ReflectedLight {
     DeliveredLight(const Scene& scene, const ElementFunction& indirect, const DirectProjection& direct,
                    const Spectrum& direct_weight, const Spectrum& c);
 
-    void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
+    void read(std::span<const RayEnd> hits, std::span<Spectrum> values) const override;
 
     /// Projected E_dir, W/m^2; its leaves are those of the projection.
     const QuickFunction& projected() const { return direct_; }

@@ -93,7 +93,7 @@ TEST(DeliveredFunctions, SumToTheLightThatRaysRead) {
         const Vec2 uv = {0.3, 0.6};
         Spectrum sum;
         for (const ElementFunction& part : parts) sum += part.at({e, uv});
-        const HitPoint hit = {furnace.direct.tree.region(e), furnace.direct.tree.patch(e).at(uv)};
+        const RayEnd hit = {furnace.direct.tree.patch(e).at(uv), furnace.direct.tree.region(e)};
         Spectrum read;
         rays.read({&hit, 1}, {&read, 1});
         EXPECT_NEAR(sum[0], read[0], 1e-6);

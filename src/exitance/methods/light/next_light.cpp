@@ -98,7 +98,7 @@ bool ReadNextLight::stands_alone() const {
     return std::all_of(parts_.begin(), parts_.end(), alone) && std::all_of(rest_.begin(), rest_.end(), alone);
 }
 
-void ReadNextLight::Sum::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
+void ReadNextLight::Sum::read(std::span<const RayEnd> hits, std::span<Spectrum> values) const {
     constexpr std::size_t batch_size = 64;
     std::array<Spectrum, batch_size> more;
     parts_[0]->read(hits, values);

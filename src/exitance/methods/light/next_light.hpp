@@ -54,7 +54,7 @@ class ReadNextLight {
       public:
         void add(const QuickFunction& part) { parts_.push_back(&part); }
         const ReflectedLight* if_any() const { return parts_.size() > 1 ? this : nullptr; }
-        void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
+        void read(std::span<const RayEnd> hits, std::span<Spectrum> values) const override;
 
       private:
         std::vector<const QuickFunction*> parts_;

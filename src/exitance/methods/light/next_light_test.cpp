@@ -34,7 +34,7 @@ class StepFurnace : public testing::Test {
     }
 
     double read(const ReflectedLight& b, ElementId e) const {
-        const HitPoint hit{direct.tree.region(e), direct.tree.patch(e).at(direct.tree.centre(e))};
+        const RayEnd hit{direct.tree.patch(e).at(direct.tree.centre(e)), direct.tree.region(e)};
         Spectrum value;
         b.read({&hit, 1}, {&value, 1});
         return value[0];

@@ -181,7 +181,7 @@ void SecondaryLight::fit_element(ElementFunction& fit, ElementId e, Workspace& s
 }
 
 /// Returns the sum of B F over the source's parts, clipped to a polygon in its plane (corners relative to x).
-Spectrum SecondaryLight::light_of(const SecondarySource& source, std::span<const Vec3> polygon, const Receiver& at,
+Spectrum SecondaryLight::light_of(const SecondarySource& source, std::span<const Vec3> polygon, const SurfacePoint& at,
                                   Workspace& scratch) const {
     const Normal& m = stage_.scene.regions()[source.region].plane.n;
     Spectrum out;
@@ -200,7 +200,7 @@ Spectrum SecondaryLight::light_of(const SecondarySource& source, std::span<const
 
 Spectrum SecondaryLight::hidden(RegionId region, const Point& x, Workspace& scratch) const {
     constexpr double negligible = 1e-12;  // derived from the rounding errors of form factors
-    const Receiver at = stage_.direct.receiver(x, stage_.scene.regions()[region].plane.n, region);
+    const SurfacePoint at = stage_.direct.receiver(x, stage_.scene.regions()[region].plane.n, region);
     Spectrum out;
     for (const SecondarySource& source : sources_) {
         if (stage_.occluders.is_own(source.region, region)) continue;

@@ -46,7 +46,7 @@ class SecondaryLight {
     Spectrum hidden(RegionId region, const Point& x, Workspace& scratch) const;
 
   private:
-    Spectrum light_of(const SecondarySource& source, std::span<const Vec3> polygon, const Receiver& at,
+    Spectrum light_of(const SecondarySource& source, std::span<const Vec3> polygon, const SurfacePoint& at,
                       Workspace& scratch) const;
     void fit_elements(const StopRequest& stop);
     void fit_element(ElementFunction& fit, ElementId e, Workspace& scratch) const;

@@ -54,7 +54,7 @@ struct Pilot {
 /// Finds the share of pairs of points that face each other, and whether any of these is occluded.
 void look_across(const Stage& stage, std::span<const ProbePoint> points, std::span<const RegionId> region, Pilot& out) {
     constexpr std::size_t partners = 8;
-    std::vector<SurfacePoint> from, to;
+    std::vector<RayEnd> from, to;
     for (std::size_t i = 0; i < points.size(); ++i)
         for (std::size_t k = 1; k <= partners; ++k) {
             const std::size_t j = (i + k * points.size() / (partners + 1)) % points.size();

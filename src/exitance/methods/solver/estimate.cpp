@@ -39,8 +39,8 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
     const Spectrum direct_weight = light_->holds_direct() ? Spectrum() : Spectrum(1.0) - c;
     DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
     if (!bright_.empty()) delivered.aim_at(bright_);
-    const auto misfit = [&](const HitPoint& hit) {
-        return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
+    const auto misfit = [&](const RayEnd& hit) {
+        return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.x).element].misfit_squared);
     };
     if (!light_->holds_direct()) options.projected = {&delivered.projected(), direct_weight, misfit};
     // A tenth of the rays so far, but at least about 30 ms of work, and 2 ms for each body, so that the errors of

@@ -50,7 +50,7 @@ class PaneGroups {
 /// Adds the part of transmitted_form_factor() (visibility/glazed_part.hpp) that crosses panes of a group to that
 /// group's entry of `out`, and the part that crosses panes of at least two groups to the last entry. `out` has one
 /// entry more than there are groups.
-void add_form_factors_through(const PaneGroups& groups, const Occluders& occluders, const Receiver& at, PieceId source,
-                              std::span<const Vec3> visible, std::span<Spectrum> out);
+void add_form_factors_through(const PaneGroups& groups, const Occluders& occluders, const SurfacePoint& at,
+                              PieceId source, std::span<const Vec3> visible, std::span<Spectrum> out);
 
 }  // namespace exitance

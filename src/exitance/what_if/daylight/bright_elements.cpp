@@ -19,7 +19,7 @@ void mean_row(const ElementLight& light, std::size_t leaf, std::span<float> out)
 }
 
 /// Direct sunlight that an element reflects, lm/m^2; 0 if all of the sun would not reach `least` lm/m^2.
-double reflected_sun(const YearSky::Sun& sun, const Receiver& at, double reflectance, double least,
+double reflected_sun(const YearSky::Sun& sun, const SurfacePoint& at, double reflectance, double least,
                      const Occluders& occluders) {
     const double most = reflectance * sun.illuminance * dot(sun.towards, at.n);
     if (!(most > std::max(0.0, least))) return 0;
@@ -50,8 +50,8 @@ BrightElements::BrightElements(const DaylightSetting& setting, const DaylightTra
             mean_row(light, first + i, std::span(rows).subspan(i * patches, patches));
         sky.add_sky(rows, lux);
         for (std::size_t i = 0; i < count; ++i) {
-            const Receiver at = transport.leaf_centre(first + i);
-            const double rho = luminous_sum(setting.scene.material(at.own).reflectance);
+            const SurfacePoint at = transport.leaf_centre(first + i);
+            const double rho = luminous_sum(setting.scene.material(at.region).reflectance);
             for (std::size_t k = 0; k < bright.size(); ++k) {
                 double B = double(lux[i * sky.hours() + bright[k]]);
                 B += reflected_sun(sky.sun(bright[k]), at, rho, threshold * pi - B, occluders);

@@ -14,7 +14,7 @@ void DaylightMatrix::resize(std::size_t sensors, std::size_t patch_count) {
 }
 
 /// Computes the light of sensor i of a block through the panes of every group.
-void DaylightRows::find_through(const Receiver& sensor, std::size_t i, const SensorRays& rays,
+void DaylightRows::find_through(const SurfacePoint& sensor, std::size_t i, const SensorRays& rays,
                                 VisiblePatches::Workspace& workspace, DaylightMatrix& out) const {
     const std::size_t m = light_.columns;
     std::vector<float> direct((transport_.pane_groups().count() + 1) * m);
@@ -33,7 +33,7 @@ void DaylightRows::find_through(const Receiver& sensor, std::size_t i, const Sen
     }
 }
 
-DaylightMatrix DaylightRows::rows_of(std::span<const Receiver> sensors, std::size_t first,
+DaylightMatrix DaylightRows::rows_of(std::span<const SurfacePoint> sensors, std::size_t first,
                                      std::span<const KnownSensor* const> known) const {
     const std::size_t m = light_.columns;
     DaylightMatrix out;

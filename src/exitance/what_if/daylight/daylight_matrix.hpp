@@ -56,16 +56,16 @@ class DaylightRows {
     /// Computes the rows of consecutive sensors, of which `first` is the number of the first. `known`: returns stored
     /// data of a sensor, or null. O(sensors x (rays + patches)).
     template <class Known>
-    DaylightMatrix rows(std::span<const Receiver> sensors, std::size_t first, const Known& known) const {
+    DaylightMatrix rows(std::span<const SurfacePoint> sensors, std::size_t first, const Known& known) const {
         std::vector<const KnownSensor*> found;
         for (std::size_t i = 0; i < sensors.size(); ++i) found.push_back(known(first + i));
         return rows_of(sensors, first, found);
     }
 
   private:
-    DaylightMatrix rows_of(std::span<const Receiver> sensors, std::size_t first,
+    DaylightMatrix rows_of(std::span<const SurfacePoint> sensors, std::size_t first,
                            std::span<const KnownSensor* const> known) const;
-    void find_through(const Receiver& sensor, std::size_t i, const SensorRays& rays,
+    void find_through(const SurfacePoint& sensor, std::size_t i, const SensorRays& rays,
                       VisiblePatches::Workspace& workspace, DaylightMatrix& out) const;
 
     const DaylightTransport& transport_;

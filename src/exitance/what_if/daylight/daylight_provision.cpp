@@ -81,15 +81,15 @@ SunlightHours::SunlightHours(const Occluders& occluders, const DaylightSite& sit
     }
 }
 
-double SunlightHours::at(const Receiver& sensor) const {
+double SunlightHours::at(const SurfacePoint& sensor) const {
     double out = 0;
     std::vector<PunctualLight> light(1);
     light[0].kind = PunctualLight::Kind::directional, light[0].intensity = Spectrum(1);
     const Beams beams(light, occluders_);
     for (const Normal& sun : suns_) {
-        if (!sensor.own.is_none() && dot(sun, sensor.n) <= 0) continue;
+        if (!sensor.region.is_none() && dot(sun, sensor.n) <= 0) continue;
         light[0].direction = -sun;
-        if (max(beams.irradiance({sensor.x, sun, sensor.own})) > 0) out += 1.0 / steps_per_hour;
+        if (max(beams.irradiance({sensor.x, sun, sensor.region})) > 0) out += 1.0 / steps_per_hour;
     }
     return out;
 }

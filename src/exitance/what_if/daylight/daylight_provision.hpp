@@ -65,7 +65,7 @@ class SunlightHours {
     /// `occluders` must outlive this object.
     SunlightHours(const Occluders& occluders, const DaylightSite& site, const SunDay& day);
     /// Hours at a sensor. About 1 us per step.
-    double at(const Receiver& sensor) const;
+    double at(const SurfacePoint& sensor) const;
 
   private:
     const Occluders& occluders_;

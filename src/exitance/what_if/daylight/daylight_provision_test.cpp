@@ -87,10 +87,10 @@ TEST(SunlightHours, AgreeWithTheSunThroughAWindow) {
     const Scene room = porch(true);
     const Occluders occluders(room);
     const std::vector<ProbePoint> sensors{{{2, -1, 1}, {0, 0, 1}}, {{2, 3.9, 0.1}, {0, 0, 1}}, {{2, 1, 0}, {0, 0, 1}}};
-    const std::vector<Receiver> places = sensor_places(room, occluders, sensors);
+    const std::vector<SurfacePoint> places = sensor_places(room, occluders, sensors);
     const SunlightHours sunlight(occluders, site, {}), high(occluders, site, {3, 21, 40});
     std::vector<double> hours;
-    for (const Receiver& place : places) hours.push_back(sunlight.at(place));
+    for (const SurfacePoint& place : places) hours.push_back(sunlight.at(place));
     EXPECT_NEAR(hours[0], 12.15, 0.1);  // the whole day of the equinox
     EXPECT_GT(hours[2], 1);
     EXPECT_LT(hours[1], hours[2]);

@@ -81,7 +81,7 @@ struct DaylightSimulation::SceneLight {
         return {transport, light.elements, setting.patches, light.options.rays_a_sensor, light.through};
     }
     const KnownSensor* find(std::size_t sensor) const { return sample ? sample->find(sensor) : nullptr; }
-    std::vector<Receiver> places(std::span<const ProbePoint> sensors) const {
+    std::vector<SurfacePoint> places(std::span<const ProbePoint> sensors) const {
         return sensor_places(setting.scene, transport.stage().occluders, sensors);
     }
 };
@@ -156,7 +156,7 @@ Result<void> DaylightSimulation::find_light() {
 
 void DaylightSimulation::choose_states() {
     Data& d = *data_;
-    const std::vector<Receiver> places = d.open.places(d.task.sensors);
+    const std::vector<SurfacePoint> places = d.open.places(d.task.sensors);
     const DaylightRows rows = d.open.rows();
     const SensorYears years(d.open.setting, {}, {});
     const YearSuns suns(d.sky);
@@ -211,19 +211,19 @@ std::vector<std::string> DaylightSimulation::warnings() const {
 
 std::vector<std::string> DaylightSimulation::sensor_warnings() const {
     const SceneLight& open = data_->open;
-    const std::vector<Receiver> places = open.places(data_->task.sensors);
+    const std::vector<SurfacePoint> places = open.places(data_->task.sensors);
     return warnings_of(find_misplaced(open.transport.stage(), places), places);
 }
 
 /// Returns the rows of the parts of HourlyStates at consecutive sensors. `through`: those of the task's scene.
-std::vector<StateRows> DaylightSimulation::state_rows(std::size_t first, std::span<const Receiver> places,
+std::vector<StateRows> DaylightSimulation::state_rows(std::size_t first, std::span<const SurfacePoint> places,
                                                       std::vector<DaylightMatrix> through) const {
     const Data& d = *data_;
     std::vector<StateRows> out;
     for (DaylightMatrix& part : through)
-        out.push_back({std::move(part), std::vector<Receiver>(places.begin(), places.end())});
+        out.push_back({std::move(part), std::vector<SurfacePoint>(places.begin(), places.end())});
     for (const std::unique_ptr<SceneLight>& scene : d.changed) {
-        std::vector<Receiver> here = scene->places(std::span(d.task.sensors).subspan(first, places.size()));
+        std::vector<SurfacePoint> here = scene->places(std::span(d.task.sensors).subspan(first, places.size()));
         const auto known = [&](std::size_t i) { return scene->find(i); };
         DaylightMatrix part = std::move(scene->rows().rows(here, first, known).through[0]);
         out.push_back({std::move(part), std::move(here)});
@@ -248,7 +248,7 @@ const DaylightLight& DaylightSimulation::light() const {
 Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink& sink) const {
     const Data& d = *data_;
     d.progress.phase("year");
-    const std::vector<Receiver> places = d.open.places(std::span(d.task.sensors).subspan(range.first, range.count));
+    const std::vector<SurfacePoint> places = d.open.places(std::span(d.task.sensors).subspan(range.first, range.count));
     const DaylightRows rows = d.open.rows();
     const SensorYears years(d.open.setting, d.open.light.bias, d.task.sun_day);
     const auto known = [&](std::size_t i) { return d.open.find(i); };
@@ -266,10 +266,10 @@ Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePo
     const Data& d = *data_;
     d.progress.phase("glare");
     const Scene& scene = d.open.setting.scene;
-    std::vector<Receiver> eyes = d.open.places(views);
+    std::vector<SurfacePoint> eyes = d.open.places(views);
     const PlaceFinder places(scene);
-    for (Receiver& eye : eyes)  // rays from an eye on a wall would end there
-        if (!eye.own.is_none()) eye.x += places.step() * scene.regions()[eye.own].plane.n, eye.own = {};
+    for (SurfacePoint& eye : eyes)  // rays from an eye on a wall would end there
+        if (!eye.region.is_none()) eye.x += places.step() * scene.regions()[eye.region].plane.n, eye.region = {};
     const DaylightRows rows(d.open.transport, d.open.light.elements, d.patches, d.open.light.options.rays_a_sensor);
     const SensorYears years(d.open.setting, d.open.light.bias, {});
     const GlareYears glare(d.open.setting, d.open.transport, d.open.light.elements, threshold);
@@ -303,7 +303,7 @@ Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task,
     const DaylightSetting setting{scene,      task.sensors, task.grids, patches,       nullptr,
                                   task.hours, task.site,    sky,        task.criteria, 1};
     const SensorYears years(setting, {}, task.sun_day);
-    const std::vector<Receiver> places = sensor_places(scene, Occluders(scene), task.sensors);
+    const std::vector<SurfacePoint> places = sensor_places(scene, Occluders(scene), task.sensors);
     const auto evaluate_some = [&](std::size_t first, std::size_t count) {
         DaylightMatrix matrix;
         matrix.resize(count, patches.size());

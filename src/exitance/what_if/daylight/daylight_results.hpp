@@ -74,7 +74,7 @@ class DaylightSimulation {
     struct Data;
     void find_light(SceneLight& scene);
     void choose_states();
-    std::vector<StateRows> state_rows(std::size_t first, std::span<const Receiver> places,
+    std::vector<StateRows> state_rows(std::size_t first, std::span<const SurfacePoint> places,
                                       std::vector<DaylightMatrix> through) const;
     std::unique_ptr<Data> data_;
 };

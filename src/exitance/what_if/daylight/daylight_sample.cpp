@@ -128,7 +128,7 @@ void DaylightSample::choose_sensors(const DaylightTransport& transport) {
         }
         first += setting_.grids[g].count;
     }
-    const std::vector<Receiver> places = sensor_places(setting_.scene, transport.stage().occluders, points);
+    const std::vector<SurfacePoint> places = sensor_places(setting_.scene, transport.stage().occluders, points);
     for (std::size_t k = 0; k < sensors_.size(); ++k) sensors_[k].at = places[k], index_[sensors_[k].number] = k;
     for_bias_ = random_indices(sensors_.size(), bias_sensors, RandomStream(setting_.seed, Stream::certificate));
 }

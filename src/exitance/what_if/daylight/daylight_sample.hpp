@@ -52,7 +52,7 @@ class DaylightSample {
   private:
     struct Sensor {
         std::size_t number = 0, grid = 0;
-        Receiver at;
+        SurfacePoint at;
         KnownSensor known;
         LinearResults results;
         std::vector<float> direct_finer;        ///< Irradiance by finer patches; empty unless the bias is measured.

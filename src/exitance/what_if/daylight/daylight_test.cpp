@@ -85,7 +85,7 @@ DaylightMatrix matrix_of(const Scene& scene, std::span<const ProbePoint> sensors
     transport.make_elements(options.elements);
     transport.cast_rows(options.rays_an_element);
     const ElementLight light = transport.solve(SkyColumns::of_patches(patches.size()));
-    const std::vector<Receiver> places = sensor_places(scene, transport.stage().occluders, sensors);
+    const std::vector<SurfacePoint> places = sensor_places(scene, transport.stage().occluders, sensors);
     return DaylightRows(transport, light, patches, options.rays_a_sensor).rows(places, 0, [](std::size_t) {
         return nullptr;
     });
@@ -142,8 +142,8 @@ TEST(Daylight, OnTheEdgeOfAWallIsThatInside) {
     };
     const auto found = factors(on), expected = factors(beside);
     const Occluders occluders(dark);
-    const std::vector<Receiver> places = sensor_places(dark, occluders, on),
-                                places_beside = sensor_places(dark, occluders, beside);
+    const std::vector<SurfacePoint> places = sensor_places(dark, occluders, on),
+                                    places_beside = sensor_places(dark, occluders, beside);
     const SunlightHours sunlight(occluders, site, {});
     for (std::size_t i = 0; i < on.size(); ++i) {
         ASSERT_GT(expected[i], 0.05);
@@ -276,7 +276,7 @@ TEST(DaylightTransport, AddedRaysGiveTheBitsOfAllRaysAtOnce) {
     const Scene room = scene(true);
     const SkyPatches patches(1);
     DaylightTransport once(room, patches, nullptr, 1), twice(room, patches, nullptr, 1);
-    const Receiver sensor{{1.5, 2, 0.8}, {0, 0, 1}, RegionId()};
+    const SurfacePoint sensor{{1.5, 2, 0.8}, {0, 0, 1}, RegionId()};
     SensorRays rays_of_once, rays_of_twice;
     once.make_elements(300), twice.make_elements(300);
     twice.cast_rows(16), twice.cast_sensor(sensor, 3, 64, rays_of_twice);

@@ -157,7 +157,7 @@ std::optional<std::size_t> DaylightTransport::leaf_at(RegionId region, const Poi
     return leaf;
 }
 
-Receiver DaylightTransport::leaf_centre(std::size_t leaf) const {
+SurfacePoint DaylightTransport::leaf_centre(std::size_t leaf) const {
     const ElementTree& tree = elements_->tree;
     const ElementId e = elements_->numbering.leaves[leaf];
     const RegionId region = tree.region(e);
@@ -338,12 +338,13 @@ ElementLight DaylightTransport::solve_twice(const SkyColumns& columns, const Ele
     return out;
 }
 
-void DaylightTransport::cast_sensor(const Receiver& sensor, std::size_t number, unsigned rays, SensorRays& out) const {
+void DaylightTransport::cast_sensor(const SurfacePoint& sensor, std::size_t number, unsigned rays,
+                                    SensorRays& out) const {
     Found found;
     for (std::size_t k = 0; k < daylight_replicates; ++k)
         cast(
             std::max<unsigned>(1, rays / daylight_replicates),
-            hash(seeds_[k], static_cast<std::uint64_t>(Stream::gather), number), sensor.own, RegionId(), sensor.n,
+            hash(seeds_[k], static_cast<std::uint64_t>(Stream::gather), number), sensor.region, RegionId(), sensor.n,
             [&](double, double) { return sensor.x; }, found, out[k]);
 }
 

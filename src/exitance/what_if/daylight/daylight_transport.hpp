@@ -106,7 +106,7 @@ class DaylightTransport {
     /// Returns the number of the leaf of a region that contains a point (metres); none outside of the elements.
     std::optional<std::size_t> leaf_at(RegionId region, const Point& x) const;
     /// Returns the centre of a leaf.
-    Receiver leaf_centre(std::size_t leaf) const;
+    SurfacePoint leaf_centre(std::size_t leaf) const;
     /// Casts rays until all replicates together have this average number per element, those of the replicates of this
     /// process. O(new rays).
     void cast_rows(double rays_an_element);
@@ -131,7 +131,7 @@ class DaylightTransport {
 
     /// Casts rays from a sensor until all replicates together have `rays` (a power of two). `number`: of the sensor,
     /// for its random points.
-    void cast_sensor(const Receiver& sensor, std::size_t number, unsigned rays, SensorRays& out) const;
+    void cast_sensor(const SurfacePoint& sensor, std::size_t number, unsigned rays, SensorRays& out) const;
     const Stage& stage() const { return stage_; }
 
   private:

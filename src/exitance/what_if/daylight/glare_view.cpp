@@ -25,7 +25,7 @@ struct GlareView::Piece {
 };
 
 GlareView::GlareView(const DaylightTransport& transport, const SkyPatches& patches, const BrightElements& bright,
-                     const Receiver& eye)
+                     const SurfacePoint& eye)
     : eye_(eye), patches_(patches.size()) {
     join(visible_pieces(transport, patches, bright));
 }

@@ -15,7 +15,7 @@ class GlareView {
   public:
     /// `eye`: not on a surface. All arguments must outlive this object. About 10 ms.
     GlareView(const DaylightTransport& transport, const SkyPatches& patches, const BrightElements& bright,
-              const Receiver& eye);
+              const SurfacePoint& eye);
 
     /// Arrays for terms(), reused.
     struct Workspace {
@@ -44,7 +44,7 @@ class GlareView {
     void collect(std::span<const float> sky, std::span<const BrightElements::Entry> elements, double threshold,
                  Workspace& workspace) const;
 
-    const Receiver eye_;
+    const SurfacePoint eye_;
     std::size_t patches_;
     std::vector<Part> parts_;                ///< Parts, sorted by patch.
     std::vector<std::uint32_t> neighbours_;  ///< Earlier parts within a step, part by part.

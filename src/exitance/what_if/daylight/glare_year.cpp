@@ -9,7 +9,7 @@ namespace exitance {
 namespace {
 
 /// Glare term of the sun for its illuminance of the eye's plane, lx.
-double sun_term(const Receiver& eye, const Normal& towards, double illuminance) {
+double sun_term(const SurfacePoint& eye, const Normal& towards, double illuminance) {
     const double cosine = dot(towards, eye.n);
     if (!(illuminance > 0 && cosine > 0)) return 0;
     const double L = illuminance / (cosine * sun_disc_solid_angle), P = daylight_position(eye.n, towards);
@@ -54,7 +54,7 @@ GlareSummary summary_of(std::span<const GlareYear> years) {
     return out;
 }
 
-GlareYear GlareYears::evaluate(const Receiver& eye, std::span<const float> illuminance,
+GlareYear GlareYears::evaluate(const SurfacePoint& eye, std::span<const float> illuminance,
                                std::span<const float> sun) const {
     const YearSky& sky = setting_.sky;
     const GlareView view(transport_, setting_.patches, bright_, eye);
@@ -71,7 +71,7 @@ GlareYear GlareYears::evaluate(const Receiver& eye, std::span<const float> illum
     return out;
 }
 
-std::vector<GlareYear> GlareYears::evaluate(std::span<const Receiver> eyes, const DaylightBlock& block) const {
+std::vector<GlareYear> GlareYears::evaluate(std::span<const SurfacePoint> eyes, const DaylightBlock& block) const {
     const std::size_t hours = setting_.sky.hours();
     std::vector<GlareYear> out(eyes.size());
     parallel_for(eyes.size(), 1, [&](std::size_t i) {

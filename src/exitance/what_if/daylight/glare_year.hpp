@@ -46,10 +46,10 @@ class GlareYears {
 
     /// `eyes`: views, each at the eye and facing along the line of sight. `block`: their results as sensors. 10 ms per
     /// view, and 1 us per hour.
-    std::vector<GlareYear> evaluate(std::span<const Receiver> eyes, const DaylightBlock& block) const;
+    std::vector<GlareYear> evaluate(std::span<const SurfacePoint> eyes, const DaylightBlock& block) const;
 
   private:
-    GlareYear evaluate(const Receiver& eye, std::span<const float> illuminance, std::span<const float> sun) const;
+    GlareYear evaluate(const SurfacePoint& eye, std::span<const float> illuminance, std::span<const float> sun) const;
 
     const DaylightSetting& setting_;
     const DaylightTransport& transport_;

@@ -33,7 +33,7 @@ class SensorSurroundings {
     explicit SensorSurroundings(const Stage& stage)
         : stage_(stage), panes_(stage.scene, std::vector<std::int32_t>(stage.scene.panes().size(), 0), 1) {}
 
-    bool sees_backs(const Receiver& sensor) const {
+    bool sees_backs(const SurfacePoint& sensor) const {
         const Frame frame(sensor.n);
         std::array<Vec3, rings * steps> ways;
         for (std::size_t k = 0; k < ways.size(); ++k)
@@ -43,7 +43,7 @@ class SensorSurroundings {
         return 2 * backs > ways.size();
     }
 
-    bool is_outdoors(const Receiver& sensor) const {
+    bool is_outdoors(const SurfacePoint& sensor) const {
         if (!is_open(sensor, Vec3{0, 0, 1})) return false;
         constexpr double min_open = 0.3;  // share of directions; derived from the foot of a high wall, which sees 0.5
         std::size_t open = 0;
@@ -53,14 +53,14 @@ class SensorSurroundings {
 
   private:
     template <std::size_t n>
-    std::array<RayHit, n> hits(const Receiver& from, const std::array<Vec3, n>& ways) const {
+    std::array<RayHit, n> hits(const SurfacePoint& from, const std::array<Vec3, n>& ways) const {
         std::array<RayHit, n> out;
-        stage_.tracer.nearest(ways, from.x, from.own, out);
+        stage_.tracer.nearest(ways, from.x, from.region, out);
         return out;
     }
 
     /// True if a ray meets neither a face nor a pane.
-    bool is_open(const Receiver& from, const Vec3& way) const {
+    bool is_open(const SurfacePoint& from, const Vec3& way) const {
         return hits(from, std::array<Vec3, 1>{way})[0].surface.is_none() && panes_.crossed_outwards(from.x, way) == 0;
     }
 
@@ -71,7 +71,7 @@ class SensorSurroundings {
 
 }  // namespace
 
-MisplacedSensors find_misplaced(const Stage& stage, std::span<const Receiver> sensors) {
+MisplacedSensors find_misplaced(const Stage& stage, std::span<const SurfacePoint> sensors) {
     const SensorSurroundings surroundings(stage);
     std::vector<std::uint8_t> is_behind(sensors.size()), is_outdoors(sensors.size());
     constexpr std::size_t grain = 64;
@@ -90,7 +90,7 @@ MisplacedSensors find_misplaced(const Stage& stage, std::span<const Receiver> se
     return out;
 }
 
-std::vector<std::string> warnings_of(const MisplacedSensors& misplaced, std::span<const Receiver> sensors) {
+std::vector<std::string> warnings_of(const MisplacedSensors& misplaced, std::span<const SurfacePoint> sensors) {
     std::vector<std::string> out;
     const auto tell = [&](const std::vector<std::size_t>& which, const char* one, const char* several) {
         if (which.empty()) return;

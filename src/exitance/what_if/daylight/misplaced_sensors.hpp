@@ -19,9 +19,9 @@ struct MisplacedSensors {
 /// Finds sensors that see mostly backs of faces, and sensors outdoors if others are indoors. A sensor is outdoors if
 /// neither a face nor a pane is straight above it, nor in at least 30% of the directions above it. Casts 64 rays per
 /// sensor: 5 us each.
-MisplacedSensors find_misplaced(const Stage& stage, std::span<const Receiver> sensors);
+MisplacedSensors find_misplaced(const Stage& stage, std::span<const SurfacePoint> sensors);
 
 /// Returns a sentence for each kind of misplaced sensors, with their count and the first of them.
-std::vector<std::string> warnings_of(const MisplacedSensors& misplaced, std::span<const Receiver> sensors);
+std::vector<std::string> warnings_of(const MisplacedSensors& misplaced, std::span<const SurfacePoint> sensors);
 
 }  // namespace exitance

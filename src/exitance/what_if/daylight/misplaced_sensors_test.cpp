@@ -31,8 +31,8 @@ Stage room(bool roof) {
     return Stage(*scenes.back());
 }
 
-std::vector<Receiver> upwards(const std::vector<Point>& points) {
-    std::vector<Receiver> out;
+std::vector<SurfacePoint> upwards(const std::vector<Point>& points) {
+    std::vector<SurfacePoint> out;
     for (const Point& p : points) out.push_back({p, {0, 0, 1}, {}});
     return out;
 }
@@ -41,7 +41,7 @@ std::vector<Receiver> upwards(const std::vector<Point>& points) {
 
 TEST(MisplacedSensors, AreOutdoorsOrBehindFaces) {
     const Stage stage = room(true);
-    const std::vector<Receiver> sensors =
+    const std::vector<SurfacePoint> sensors =
         upwards({{2, 1.5, 0.8}, {2, 0.1, 0.8}, {-3, 1.5, 0.8}, {2, 1.5, -0.1}, {2, -0.5, 0.8}, {2, 1.5, 2.4}});
     const MisplacedSensors found = find_misplaced(stage, sensors);
     EXPECT_EQ(found.outdoors, (std::vector<std::size_t>{2, 4}));
@@ -59,7 +59,7 @@ TEST(MisplacedSensors, AreOutdoorsOrBehindFaces) {
 
 TEST(MisplacedSensors, AreNoneIfAllAreOutdoorsOrIndoors) {
     const Stage open = room(false), closed = room(true);
-    const std::vector<Receiver> sensors = upwards({{2, 1.5, 0.8}, {-3, 1.5, 0.8}});
+    const std::vector<SurfacePoint> sensors = upwards({{2, 1.5, 0.8}, {-3, 1.5, 0.8}});
     EXPECT_TRUE(find_misplaced(open, sensors).outdoors.empty());
     EXPECT_TRUE(find_misplaced(closed, std::span(sensors).first(1)).outdoors.empty());
     EXPECT_TRUE(warnings_of({}, sensors).empty());

@@ -4,10 +4,10 @@
 
 namespace exitance {
 
-std::vector<Receiver> sensor_places(const Scene& scene, const Occluders& occluders,
-                                    std::span<const ProbePoint> sensors) {
+std::vector<SurfacePoint> sensor_places(const Scene& scene, const Occluders& occluders,
+                                        std::span<const ProbePoint> sensors) {
     const PlaceFinder places(scene);
-    std::vector<Receiver> out;
+    std::vector<SurfacePoint> out;
     for (const ProbePoint& sensor : sensors) {
         const MeasuredPlace place = places.find(sensor.x, sensor.n);
         Point x = place.x;

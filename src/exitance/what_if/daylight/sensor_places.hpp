@@ -11,7 +11,7 @@ namespace exitance {
 
 /// Returns sensors as receivers of light, at the places found by a PlaceFinder. Sensors on a surface are moved into its
 /// plane.
-std::vector<Receiver> sensor_places(const Scene& scene, const Occluders& occluders,
-                                    std::span<const ProbePoint> sensors);
+std::vector<SurfacePoint> sensor_places(const Scene& scene, const Occluders& occluders,
+                                        std::span<const ProbePoint> sensors);
 
 }  // namespace exitance

@@ -63,7 +63,7 @@ void SensorYears::finish(const std::array<SpreadResult, result_count>& spread, S
 }
 
 /// Evaluates `count` sensors from index `first` of a block on, whose rows of hours are 0.
-void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<const Receiver> places,
+void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<const SurfacePoint> places,
                                 std::span<const StateRows> parts, DaylightBlock& block) const {
     const DaylightMatrix& matrix = block.matrix;
     const std::size_t m = matrix.patches, hours = setting_.sky.hours();
@@ -125,7 +125,7 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
               block.variants.begin() + static_cast<std::ptrdiff_t>(first * (variants.size() / count)));
 }
 
-DaylightBlock SensorYears::evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix,
+DaylightBlock SensorYears::evaluate(std::size_t first, std::span<const SurfacePoint> places, DaylightMatrix matrix,
                                     std::span<const StateRows> parts) const {
     const std::size_t n = places.size(), m = matrix.patches, hours = setting_.sky.hours();
     DaylightBlock block;

@@ -69,14 +69,14 @@ class SensorYears {
     /// sensors x hours x patches): 1 ms per sensor with 146 patches.
     /// `parts`: the rows of the parts of HourlyStates, if the setting has states. The number of sunny hours is then
     /// that of the first states, as ASE requires; all other results of hours are those of the states.
-    DaylightBlock evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix,
+    DaylightBlock evaluate(std::size_t first, std::span<const SurfacePoint> places, DaylightMatrix matrix,
                            std::span<const StateRows> parts = {}) const;
 
   private:
     static constexpr std::size_t result_count = 9;
     using Results = std::array<double, result_count>;
 
-    void evaluate_tile(std::size_t first, std::size_t count, std::span<const Receiver> places,
+    void evaluate_tile(std::size_t first, std::size_t count, std::span<const SurfacePoint> places,
                        std::span<const StateRows> parts, DaylightBlock& block) const;
     Results results_of(double factor, std::span<const float> lux, std::span<const float> sun) const;
     void finish(const std::array<SpreadResult, result_count>& spread, SensorResults& out) const;

@@ -18,7 +18,7 @@ class CommonSunlight {
         : setting_(setting), groups_(groups), suns_(setting.sky), hours_(setting.sky.hours()) {}
 
     /// Returns the sunlight of the grid with the most of it, lx, per group and hour; 0 below 1000 lx.
-    std::vector<std::vector<float>> find(const Occluders& occluders, std::span<const Receiver> places) const {
+    std::vector<std::vector<float>> find(const Occluders& occluders, std::span<const SurfacePoint> places) const {
         std::vector<std::vector<float>> out(groups_.count(), std::vector<float>(hours_, 0));
         std::size_t first = 0;
         for (const SensorGrid& grid : setting_.grids) {
@@ -48,7 +48,8 @@ class CommonSunlight {
     }
 
     /// Returns up to `most` values of the sensors of a grid: a row per group, a column per hour.
-    std::vector<Largest> largest(const Occluders& occluders, std::span<const Receiver> places, std::size_t most) const {
+    std::vector<Largest> largest(const Occluders& occluders, std::span<const SurfacePoint> places,
+                                 std::size_t most) const {
         constexpr std::size_t together = 256;
         std::vector<Largest> out(groups_.count() * hours_);
         std::vector<YearSuns::Through> sun(together * hours_);
@@ -120,7 +121,7 @@ VariantWeights weights_of(const DaylightStates& states, const GlassVariant& vari
 }  // namespace
 
 StateChooser::StateChooser(const DaylightStates& states, const DaylightSetting& setting, const Occluders& occluders,
-                           const PaneGroups& groups, std::span<const Receiver> places, const OpenLight& open_light)
+                           const PaneGroups& groups, std::span<const SurfacePoint> places, const OpenLight& open_light)
     : states_(states), hours_(setting.sky.hours()) {
     const auto is_by_sun = [](const PaneGroup& g) { return g.rule.kind == StateRule::Kind::sunlight; };
     if (std::any_of(states.groups.begin(), states.groups.end(), is_by_sun))

@@ -17,7 +17,7 @@ class StateChooser {
     /// `places`: all sensors of the setting; `groups`: the panes of the groups in the setting's scene. `states` must
     /// outlive this. For groups with the rule `sunlight`: O(sensors x hours with sun).
     StateChooser(const DaylightStates& states, const DaylightSetting& setting, const Occluders& occluders,
-                 const PaneGroups& groups, std::span<const Receiver> places, const OpenLight& open_light);
+                 const PaneGroups& groups, std::span<const SurfacePoint> places, const OpenLight& open_light);
 
     /// Returns the state of every group and hour. `factors`: of the light through the panes of each group, at most 1.
     std::vector<std::vector<std::uint8_t>> choose(std::span<const double> factors) const;

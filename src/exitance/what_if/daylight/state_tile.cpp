@@ -35,7 +35,7 @@ void StateTile::find_straight(const YearSuns& suns, std::span<const float> sun) 
         std::vector<float>& of_part = sun_.emplace_back(tile_.count * hours, 0.0f);
         if (!part.occluders) of_part.assign(sun.begin(), sun.end());
         for (std::size_t i = 0; i < tile_.count; ++i) {
-            const Receiver& at = parts_[k].places[tile_.first + i];
+            const SurfacePoint& at = parts_[k].places[tile_.first + i];
             const std::span<float> row = std::span(of_part).subspan(i * hours, hours);
             if (part.occluders) suns.find(*part.occluders, at, direct.subspan(i * m, m), row);
             suns.keep_through(*part.groups, part.group, at, row);

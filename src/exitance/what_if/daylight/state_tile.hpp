@@ -14,7 +14,7 @@ namespace exitance {
 /// Light through a group of panes at the sensors of a block: one of the parts of HourlyStates.
 struct StateRows {
     DaylightMatrix matrix;
-    std::vector<Receiver> places;  ///< The sensors in the scene of the part.
+    std::vector<SurfacePoint> places;  ///< The sensors in the scene of the part.
 };
 
 /// Consecutive sensors of a block.

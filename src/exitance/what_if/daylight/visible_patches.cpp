@@ -36,7 +36,7 @@ void VisiblePatches::clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::
 
 /// Calls visit(piece, polygon, patch) for the visible part of every facet of a patch, relative to the receiver.
 template <class Visit>
-void VisiblePatches::for_each_part(const Receiver& at, Workspace& workspace, const Visit& visit) const {
+void VisiblePatches::for_each_part(const SurfacePoint& at, Workspace& workspace, const Visit& visit) const {
     auto& [visibility, fragments, part, rest] = workspace;
     for (const PieceId piece : occluders_.distant_pieces()) {
         visible_fragments(occluders_, at, piece, {}, visibility, fragments);
@@ -54,7 +54,7 @@ void VisiblePatches::for_each_part(const Receiver& at, Workspace& workspace, con
     }
 }
 
-void VisiblePatches::irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const {
+void VisiblePatches::irradiance(const SurfacePoint& at, Workspace& workspace, std::span<float> out) const {
     const Spectrum weights = luminous_weights();
     std::fill(out.begin(), out.end(), 0.0f);
     for_each_part(at, workspace, [&](PieceId piece, const std::vector<Vec3>& part, std::uint32_t patch) {
@@ -63,7 +63,7 @@ void VisiblePatches::irradiance(const Receiver& at, Workspace& workspace, std::s
     });
 }
 
-void VisiblePatches::irradiance_through(const PaneGroups& groups, const Receiver& at, Workspace& workspace,
+void VisiblePatches::irradiance_through(const PaneGroups& groups, const SurfacePoint& at, Workspace& workspace,
                                         std::span<float> out) const {
     const std::size_t rows = groups.count() + 1, columns = out.size() / rows;
     std::vector<Spectrum> F(rows);

@@ -25,10 +25,10 @@ class VisiblePatches {
     };
     /// Computes the irradiance at a sensor by every patch with luminance 1, also through panes: one value per patch.
     /// Bands are weighted by luminous_weights(). O(patches x visible parts).
-    void irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const;
+    void irradiance(const SurfacePoint& at, Workspace& workspace, std::span<float> out) const;
     /// Computes the parts of it that cross panes of each group, and in the last row the part that crosses panes of two
     /// groups or more: a row per group and one more, a column per patch.
-    void irradiance_through(const PaneGroups& groups, const Receiver& at, Workspace& workspace,
+    void irradiance_through(const PaneGroups& groups, const SurfacePoint& at, Workspace& workspace,
                             std::span<float> out) const;
 
   private:
@@ -40,7 +40,7 @@ class VisiblePatches {
     };
     static void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& rest);
     template <class Visit>
-    void for_each_part(const Receiver& at, Workspace& workspace, const Visit& visit) const;
+    void for_each_part(const SurfacePoint& at, Workspace& workspace, const Visit& visit) const;
 
     const Occluders& occluders_;
     std::vector<Cone> cones_;

@@ -18,7 +18,7 @@ YearSuns::YearSuns(const YearSky& sky) : sky_(sky), suns_(sky.hours()) {
     }
 }
 
-void YearSuns::find(const Occluders& occluders, const Receiver& at, std::span<const float> direct,
+void YearSuns::find(const Occluders& occluders, const SurfacePoint& at, std::span<const float> direct,
                     std::span<float> sun) const {
     for (std::size_t h = 0; h < suns_.size(); ++h) {
         if (suns_[h].empty()) continue;
@@ -30,7 +30,7 @@ void YearSuns::find(const Occluders& occluders, const Receiver& at, std::span<co
     }
 }
 
-void YearSuns::find_through(const Occluders& occluders, const PaneGroups& groups, const Receiver& at, double least,
+void YearSuns::find_through(const Occluders& occluders, const PaneGroups& groups, const SurfacePoint& at, double least,
                             std::span<Through> out) const {
     for (std::size_t h = 0; h < suns_.size(); ++h) {
         out[h] = {};
@@ -43,7 +43,7 @@ void YearSuns::find_through(const Occluders& occluders, const PaneGroups& groups
     }
 }
 
-void YearSuns::keep_through(const PaneGroups& groups, std::size_t group, const Receiver& at,
+void YearSuns::keep_through(const PaneGroups& groups, std::size_t group, const SurfacePoint& at,
                             std::span<float> sun) const {
     for (std::size_t h = 0; h < suns_.size(); ++h)
         if (sun[h] > 0 && (groups.crossed_outwards(at.x, sky_.sun(h).towards) >> group & 1) == 0) sun[h] = 0;

@@ -17,7 +17,7 @@ class YearSuns {
 
     /// Writes the direct sunlight of every hour at a sensor, lx. `direct`: irradiance by every patch at the sensor: one
     /// that sees none of the sun's patches does not see the sun. Hours without sun are not changed.
-    void find(const Occluders& occluders, const Receiver& at, std::span<const float> direct,
+    void find(const Occluders& occluders, const SurfacePoint& at, std::span<const float> direct,
               std::span<float> sun) const;
 
     /// Direct sunlight of an hour, and the groups whose panes it has crossed.
@@ -26,11 +26,11 @@ class YearSuns {
         float illuminance = 0;  ///< lx
     };
     /// Writes the direct sunlight of every hour that crosses panes of groups; `least`: lesser light is left out, lx.
-    void find_through(const Occluders& occluders, const PaneGroups& groups, const Receiver& at, double least,
+    void find_through(const Occluders& occluders, const PaneGroups& groups, const SurfacePoint& at, double least,
                       std::span<Through> out) const;
 
     /// Sets the hours to 0 in which the sun does not shine through panes of a group.
-    void keep_through(const PaneGroups& groups, std::size_t group, const Receiver& at, std::span<float> sun) const;
+    void keep_through(const PaneGroups& groups, std::size_t group, const SurfacePoint& at, std::span<float> sun) const;
 
   private:
     const YearSky& sky_;

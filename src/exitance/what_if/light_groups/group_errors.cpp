@@ -56,9 +56,9 @@ class GroupsLight {
 
     /// Adds the reflected light of a front, and the share of its exitance that elements contain. `weight`: of the ray
     /// that hit it.
-    void add(const HitPoint& hit, double weight, std::vector<Spectrum>& sums) const {
-        const std::uint32_t source = source_at(hit.region, hit.y);
-        const ElementTree::Place place = indirect_.find(hit.region, hit.y);
+    void add(const RayEnd& hit, double weight, std::vector<Spectrum>& sums) const {
+        const std::uint32_t source = source_at(hit.region, hit.x);
+        const ElementTree::Place place = indirect_.find(hit.region, hit.x);
         if (source == TransportLayout::none || place.element.is_none()) return;
         const Material& material = solution_.scene.material(hit.region);
         const std::uint32_t own = group_of_[solution_.scene.regions()[hit.region].material.value];
@@ -73,7 +73,7 @@ class GroupsLight {
                 continue;
             }
             Spectrum E = at.of(groups_.groups[g].indirect);
-            if (!solution_.direct_in_elements) E += apart * direct_at(g, source, hit.y);
+            if (!solution_.direct_in_elements) E += apart * direct_at(g, source, hit.x);
             sums[g] += weight * material.reflectance * E;
         }
     }
