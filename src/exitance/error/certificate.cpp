@@ -83,7 +83,7 @@ struct Certifier::Content {
     }
 
     ResidualSampler sampler() const {
-        return {stage, indirect, b, check, options, response.constant(), coarse, light.numbering};
+        return {stage, {indirect, b}, check, options, response.constant(), {light.tree, light.numbering, coarse}};
     }
     /// Returns the mean reflected light of a room, W/m^2, to which its errors are relative.
     double light_of_room(std::size_t room) const {

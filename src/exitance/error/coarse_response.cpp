@@ -16,7 +16,7 @@ RayRows rows_by_rays(const Stage& stage, const GlobalLight& light, const Element
     constexpr double mean_rays = 16, min_rays = 8;
     const double fewer = fewer_rays_in_crowd(stage, light.tree, light.numbering, light.reflected);
     const RayBudget rays{.average = fewer * mean_rays, .min = static_cast<unsigned>(fewer * min_rays), .max = 64};
-    return {stage, light.tree, light.numbering, coarse, rays, seed, Dealing::by_element, RowsHeld::by_owner};
+    return {stage, {light.tree, light.numbering, coarse}, {rays, seed, Dealing::by_element, RowsHeld::by_owner}};
 }
 
 /// Returns the room of every leaf of the mesh of `light`; empty if the scene is one room.

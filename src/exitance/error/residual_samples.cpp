@@ -43,41 +43,38 @@ unsigned certificate_rays(double wanted) {
     return std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, calibrated::min_rays_per_sample, most)));
 }
 
-ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
-                                 const DirectCheck& check, const CertificateOptions& options, double constant,
-                                 const ElementLocator& coarse, const LeafNumbering& numbering)
+ResidualSampler::ResidualSampler(const Stage& stage, const Delivered& light, const DirectCheck& check,
+                                 const CertificateOptions& options, double constant, const NumberedLeaves& coarse)
     : stage_(stage),
-      indirect_(indirect),
-      b_(b),
+      light_(light),
       check_(check),
       options_(options),
       ray_factor_(factor_for_many_reflections(constant)),
-      coarse_(coarse),
-      numbering_(numbering) {}
+      coarse_(coarse) {}
 
 unsigned ResidualSampler::rays_at(ElementId leaf) const {
     if (options_.leaves)
         return certificate_rays(calibrated::certificate_ray_share *
-                                LocalPassReport::known(*options_.leaves, indirect_.tree, leaf).rays);
+                                LocalPassReport::known(*options_.leaves, light_.indirect.tree, leaf).rays);
     return certificate_rays(ray_factor_ * rays_to_resolve(options_.error, options_.points));
 }
 
 Point ResidualSampler::point(const ResidualSample& sample) const {
-    return indirect_.tree.patch(sample.place.element).at(sample.place.uv);
+    return light_.indirect.tree.patch(sample.place.element).at(sample.place.uv);
 }
 
 void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, Workspace& w) const {
     sample.place = at.place, sample.weight = at.weight;
-    const RegionId region = sample.region = indirect_.tree.region(at.place.element);
+    const RegionId region = sample.region = light_.indirect.tree.region(at.place.element);
     const Point x = point(sample);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     sample.is_covered = !is_in_open(stage_, x, n, region);
-    if (!sample.is_covered) sample.delivered = indirect_.at(at.place);
+    if (!sample.is_covered) sample.delivered = light_.indirect.at(at.place);
     if (!sample.is_covered && options_.direct_in_elements)
         sample.delivered -= stage_.place_light.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;
     sample.reflected = 0;
     if (!sample.is_covered) {
-        Spectrum E = indirect_.at(at.place);
+        Spectrum E = light_.indirect.at(at.place);
         if (check_.has_projection()) {
             const RayEnd here{x, region};
             Spectrum projected;
@@ -88,7 +85,7 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     }
     sample.surface = surface_at(stage_.scene, region, x);
     if (stage_.rooms.count() > 0) sample.room = static_cast<std::uint32_t>(stage_.rooms.at(region, x));
-    sample.leaf = numbering_.number[coarse_.find(region, x).element];
+    sample.leaf = coarse_.numbering.number[coarse_.locator.find(region, x).element];
 }
 
 /// Measures the residual by sums over elements. Two gathers of independent rays correct the projected direct light in
@@ -112,7 +109,7 @@ void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const Chec
     if (sample.is_covered || !check_.has_projection()) return;
     for (std::uint64_t which = 1; which <= 2; ++which) {
         const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
-        cast_gather(stage_, x, n, sample.region, rays_beside_sums, key, b_.bright_places(), w.rays);
+        cast_gather(stage_, x, n, sample.region, rays_beside_sums, key, light_.b.bright_places(), w.rays);
         (which == 1 ? sample.r1 : sample.r2) += reflectance * check_.missing(plan, w.rays, key, w.check);
     }
     sample.rays = 2 * rays_beside_sums;
@@ -159,8 +156,8 @@ Spectrum ResidualSampler::by_rays(const ResidualSample& sample, const CheckPlan&
                                   Workspace& w) const {
     if (sample.is_covered) return {};
     const Region& region = stage_.scene.regions()[sample.region];
-    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, b_.bright_places(), w.rays);
-    const Spectrum arriving = read_gather(b_, w.rays).irradiance + check_.missing(plan, w.rays, key, w.check);
+    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, light_.b.bright_places(), w.rays);
+    const Spectrum arriving = read_gather(light_.b, w.rays).irradiance + check_.missing(plan, w.rays, key, w.check);
     return stage_.scene.material(sample.region).reflectance * (arriving - sample.delivered);
 }
 

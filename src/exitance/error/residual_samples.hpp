@@ -2,7 +2,7 @@
 
 #include "exitance/error/certificate_places.hpp"
 #include "exitance/error/direct_check.hpp"
-#include "exitance/mesh/element_locator.hpp"
+#include "exitance/mesh/numbered_leaves.hpp"
 
 namespace exitance {
 
@@ -47,11 +47,16 @@ class ResidualSampler {
         DirectCheck::Workspace check;
     };
 
-    /// `constant`: ratio of the error bound to the residual. `coarse` finds the leaves that `numbering` numbers. All
-    /// arguments except `constant` must outlive the object.
-    ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
-                    const DirectCheck& check, const CertificateOptions& options, double constant,
-                    const ElementLocator& coarse, const LeafNumbering& numbering);
+    /// The light that is delivered, on elements and as rays find it at their hits.
+    struct Delivered {
+        const ElementFunction& indirect;
+        const ReflectedLight& b;
+    };
+
+    /// `constant`: ratio of the error bound to the residual. `coarse`: leaves of the coarse mesh. All that arguments
+    /// refer to must outlive the object.
+    ResidualSampler(const Stage& stage, const Delivered& light, const DirectCheck& check,
+                    const CertificateOptions& options, double constant, const NumberedLeaves& coarse);
 
     /// Measures the residual twice at each place; `samples` has one entry per place. `plans` determines how the direct
     /// light at hits of rays from each room is checked. Returns false if a stop was requested before all places were
@@ -80,15 +85,13 @@ class ResidualSampler {
     Point point(const ResidualSample& sample) const;
 
     const Stage& stage_;
-    const ElementFunction& indirect_;
-    const ReflectedLight& b_;
+    const Delivered light_;
     const DirectCheck& check_;
     const CertificateOptions& options_;
     /// Factor on the number of rays. It is above 1 if light is reflected so often that a small mean residual causes a
     /// large error.
     double ray_factor_;
-    const ElementLocator& coarse_;
-    const LeafNumbering& numbering_;
+    const NumberedLeaves coarse_;
 };
 
 }  // namespace exitance

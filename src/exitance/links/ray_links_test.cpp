@@ -18,7 +18,8 @@ struct Kept {
 struct Rows : Kept, LitElements {
     LeafNumbering numbering{tree};
     ElementLocator locator{tree, stage.scene.regions().size()};
-    RayRows rows{stage, tree, numbering, locator, {.average = 32, .min = 8, .max = 256}, 1, Dealing::by_piece};
+    NumberedLeaves numbered{tree, numbering, locator};
+    RayRows rows{stage, numbered, {{.average = 32, .min = 8, .max = 256}, 1, Dealing::by_piece}};
 
     template <class Light>
     Rows(Scene given, const Light& light) : Kept{std::move(given)}, LitElements(scene, HierarchyBasis::haar, light) {}
@@ -103,13 +104,13 @@ TEST(OpenShare, IsOneWithoutOccludersAndSmallInARoomWithBoxes) {
     const auto share = [](Scene scene) {
         const Rows r(std::move(scene), [](const Point&) { return 1.0; });
         const std::vector<Spectrum> even(r.numbering.leaves.size(), Spectrum(1.0));
-        return open_share(r.stage, r.tree, r.numbering, r.locator, even, 1);
+        return open_share(r.stage, r.numbered, even, 1);
     };
     EXPECT_EQ(share(box_scene(1, 2, 3, 0.5, 1)), 1);
     const auto mostly = [](Scene scene) {
         const Rows r(std::move(scene), [](const Point&) { return 1.0; });
         const std::vector<Spectrum> even(r.numbering.leaves.size(), Spectrum(1.0));
-        return is_mostly_open(r.stage, r.tree, r.numbering, r.locator, even, 1);
+        return is_mostly_open(r.stage, r.numbered, even, 1);
     };
     EXPECT_TRUE(mostly(box_scene(1, 2, 3, 0.5, 1)));
     EXPECT_FALSE(mostly(built_scene("cornell")));
@@ -121,7 +122,7 @@ TEST(OpenShare, IsOneWithoutOccludersAndSmallInARoomWithBoxes) {
 TEST(IsClosed, DistinguishesABoxFromAnOpenRoom) {
     const auto closed = [](Scene scene) {
         const Rows r(std::move(scene), [](const Point&) { return 1.0; });
-        return is_closed(r.stage, r.tree, r.numbering, r.locator, 1);
+        return is_closed(r.stage, r.numbered, 1);
     };
     EXPECT_TRUE(closed(box_scene(1, 2, 3, 0.5, 1)));
     EXPECT_FALSE(closed(built_scene("spiral")));

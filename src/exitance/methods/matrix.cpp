@@ -88,14 +88,14 @@ GlobalLight solve_matrix(const MethodInput& input) {
         solve_linear(input, light);
     } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
-        const RayRows F(stage, light.tree, light.numbering, locator, rays_of_rows(input, light), options.seed,
-                        Dealing::by_element, RowsHeld::by_owner);
+        const RayRows F(stage, {light.tree, light.numbering, locator},
+                        {rays_of_rows(input, light), options.seed, Dealing::by_element, RowsHeld::by_owner});
         if (options.bounces < 0) light.kept = kept_light(F, stage.scene);
         relax_constant_elements(input, F, light);
         light.work.rays = light.work.links = F.rays();
     } else if (*options.form_factors == FormFactorKind::hemicube) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
-        const HemicubeRows F(stage, light.tree, light.numbering, locator, hemicube_cells(input));
+        const HemicubeRows F(stage, {light.tree, light.numbering, locator}, hemicube_cells(input));
         const PassedLight passed(stage.scene, light.tree, light.numbering.leaves);
         relax_constant_elements(input, PassingTransport(F, passed), light);
         light.work.rays = F.rays();

@@ -50,15 +50,14 @@ namespace {
 /// Makes the rows of one thread's elements, one at a time.
 class RowMaker {
   public:
-    RowMaker(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
-             const Hemicube& cube)
+    RowMaker(const Stage& stage, const NumberedLeaves& leaves, const Hemicube& cube)
         : stage_(stage),
-          tree_(tree),
-          locator_(locator),
+          tree_(leaves.tree),
+          locator_(leaves.locator),
           cube_(cube),
           directions_(cube.direction.size()),
           hits_(cube.direction.size()),
-          sum_(numbering.leaves.size(), 0.0) {}
+          sum_(leaves.numbering.leaves.size(), 0.0) {}
 
     /// Calls add(leaf number, form factor) for every leaf visible from the centre of `e`, in ascending order.
     template <class Add>
@@ -104,21 +103,21 @@ class RowMaker {
 
 }  // namespace
 
-HemicubeRows::HemicubeRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                           const ElementLocator& locator, unsigned cells) {
+HemicubeRows::HemicubeRows(const Stage& stage, const NumberedLeaves& leaves, unsigned cells) {
+    const LeafNumbering& numbering = leaves.numbering;
     const Hemicube cube(cells);
     const std::size_t n = numbering.leaves.size();
     std::vector<std::vector<Entry>> rows(n);
     parallel_ranges(n, 16,
                     [&](std::size_t begin, std::size_t end) {
-                        RowMaker maker(stage, tree, numbering, locator, cube);
+                        RowMaker maker(stage, leaves, cube);
                         for (std::size_t i = begin; i < end; ++i)
                             maker.make(numbering.leaves[i], [&](std::uint32_t leaf, double factor) {
                                 rows[i].push_back({leaf, static_cast<float>(factor)});
                             });
                         note_touched("rays", (end - begin) * cube.factor.size());
                     },
-                    {"hemicubes", [&](std::size_t i) { return tree.region(numbering.leaves[i]).value; }});
+                    {"hemicubes", [&](std::size_t i) { return leaves.tree.region(numbering.leaves[i]).value; }});
     rays_ = n * cube.factor.size();
     for (std::vector<Entry>& row : rows) {
         first_.push_back(entry_.size());

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/mesh/element_locator.hpp"
+#include "exitance/mesh/numbered_leaves.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"
 
@@ -30,9 +30,8 @@ Normal hemicube_axis(const Patch& patch, const Normal& n);
 /// Source: [Cohen85], with rays instead of a depth buffer.
 class HemicubeRows final : public TransportOperator {
   public:
-    HemicubeRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                 /// `cells`: cells along an edge of the hemicube's top, N.
-                 const ElementLocator& locator, unsigned cells);
+    /// `cells`: cells along an edge of the hemicube's top, N.
+    HemicubeRows(const Stage& stage, const NumberedLeaves& leaves, unsigned cells);
 
     std::size_t size() const override { return first_.size() - 1; }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;

@@ -28,7 +28,7 @@ struct Rows {
           tree(stage.make_elements({edge, 0})),
           numbering(tree),
           locator(tree, scene.regions().size()),
-          F(stage, tree, numbering, locator, cells) {}
+          F(stage, {tree, numbering, locator}, cells) {}
 
     /// Form factor from the receiver's centre, without occlusion.
     double exact(std::size_t receiver, std::size_t source) const {

@@ -126,7 +126,7 @@ TEST(RayRows, FindAHoleByAimedRays) {
     constexpr std::uint64_t seeds = 8;
     double received = 0, square = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        const RayRows F(stage, tree, numbering, locator, {.average = 64, .min = 64, .max = 64}, seed);
+        const RayRows F(stage, {tree, numbering, locator}, {{.average = 64, .min = 64, .max = 64}, seed});
         F.gather(b, E);
         double sum = 0;  // light outside the box from unit radiosity inside, W: the hole's area
         for (std::size_t i = 0; i < b.size(); ++i)

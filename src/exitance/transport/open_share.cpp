@@ -47,9 +47,10 @@ std::vector<ElementId> leaves_in_strata(const LeafNumbering& numbering, std::spa
 namespace {
 
 /// Estimates open_share() from one stratum in `every`.
-double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed,
+double open_share(const Stage& stage, const NumberedLeaves& in, std::span<const Spectrum> radiosity, std::uint64_t seed,
                   std::size_t every) {
+    const ElementTree& tree = in.tree;
+    const LeafNumbering& numbering = in.numbering;
     struct Light {
         double open = 0, all = 0;
         Light& operator+=(const Light& o) {
@@ -60,7 +61,7 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
     const std::vector<ElementId> leaves = leaves_in_strata(numbering, leaf_areas(tree, numbering));
     const Light sum = parallel_sum<Light>(leaves.size() / every, [&](std::size_t i) {
         const std::size_t k = i * every;
-        ElementRays rays(stage, tree, locator);
+        ElementRays rays(stage, tree, in.locator);
         std::uint32_t hit = 0;
         // Leaves use points of one sequence, so that their directions together are stratified.
         rays.cast(leaves[k], hash(seed, static_cast<std::uint64_t>(Stream::rows)), {&hit, 1},
@@ -76,26 +77,26 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
 
 }  // namespace
 
-double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                  const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
-    return open_share(stage, tree, numbering, locator, radiosity, seed, 1);
+double open_share(const Stage& stage, const NumberedLeaves& leaves, std::span<const Spectrum> radiosity,
+                  std::uint64_t seed) {
+    return open_share(stage, leaves, radiosity, seed, 1);
 }
 
-bool is_mostly_open(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                    const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
+bool is_mostly_open(const Stage& stage, const NumberedLeaves& leaves, std::span<const Spectrum> radiosity,
+                    std::uint64_t seed) {
     constexpr std::size_t every = 8;
     constexpr double far_below = 0.2;  // derived from three standard errors of 64 strata
-    return open_share(stage, tree, numbering, locator, radiosity, seed, every) > mostly_open - far_below &&
-           open_share(stage, tree, numbering, locator, radiosity, seed, 1) > mostly_open;
+    return open_share(stage, leaves, radiosity, seed, every) > mostly_open - far_below &&
+           open_share(stage, leaves, radiosity, seed, 1) > mostly_open;
 }
 
-bool is_closed(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-               const ElementLocator& locator, std::uint64_t seed, std::span<const double> power) {
+bool is_closed(const Stage& stage, const NumberedLeaves& in, std::uint64_t seed, std::span<const double> power) {
+    const LeafNumbering& numbering = in.numbering;
     constexpr std::size_t each = 8;
-    const std::vector<ElementId> leaves =
-        power.empty() ? leaves_in_strata(numbering, leaf_areas(tree, numbering)) : leaves_in_strata(numbering, power);
+    const std::vector<ElementId> leaves = power.empty() ? leaves_in_strata(numbering, leaf_areas(in.tree, numbering))
+                                                        : leaves_in_strata(numbering, power);
     const double missed = parallel_sum<double>(leaves.size(), [&](std::size_t k) {
-        ElementRays rays(stage, tree, locator);
+        ElementRays rays(stage, in.tree, in.locator);
         std::array<std::uint32_t, each> hits{};
         rays.cast(leaves[k], hash(seed, static_cast<std::uint64_t>(Stream::rows)), hits,
                   static_cast<std::uint32_t>(each * k));

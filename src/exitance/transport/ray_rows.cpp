@@ -55,19 +55,19 @@ std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, 
 
 }  // namespace
 
-RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                 const ElementLocator& locator, RayBudget budget, std::uint64_t seed, Dealing dealing, RowsHeld held,
-                 const StopRequest* stop)
-    : dealt_(held == RowsHeld::everywhere
-                 ? DealtUnknowns(numbering.leaves.size())
-                 : DealtUnknowns(numbering.leaves.size(), dealt_block(numbering.leaves.size()))) {
+RayRows::RayRows(const Stage& stage, const NumberedLeaves& leaves, const RowRays& cast, const StopRequest* stop)
+    : dealt_(cast.held == RowsHeld::everywhere
+                 ? DealtUnknowns(leaves.numbering.leaves.size())
+                 : DealtUnknowns(leaves.numbering.leaves.size(), dealt_block(leaves.numbering.leaves.size()))) {
+    const ElementTree& tree = leaves.tree;
+    const LeafNumbering& numbering = leaves.numbering;
     const std::size_t n = numbering.leaves.size(), block = dealt_.block();
     const double mean_area = stage.area / static_cast<double>(n);
     std::vector<std::size_t> first(n + 1, 0);  // position of each row's first ray
     for (std::size_t i = 0; i < n; ++i)
-        first[i + 1] = first[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
+        first[i + 1] = first[i] + cast.budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
     rays_ = first[n];
-    const std::vector<Deal> points = deal(tree, numbering, first, seed, dealing);
+    const std::vector<Deal> points = deal(tree, numbering, first, cast.seed, cast.dealing);
     first_.assign(dealt_.own_count() + 1, 0);
     for (std::size_t at = 0; at < dealt_.own_count(); ++at) {
         const std::size_t i = dealt_.unknown(at);
@@ -79,8 +79,8 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
     parallel_own_ranges(
         n, block,
         [&](std::size_t begin, std::size_t end) {
-            ElementRays rays(stage, tree, locator);
-            const auto leave = budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
+            ElementRays rays(stage, tree, leaves.locator);
+            const auto leave = cast.budget.front_alone ? ElementRays::Leave::front : ElementRays::Leave::as_met;
             for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
                 const auto row = of_row(std::span(hits_), i);
                 const auto counts = counts_.empty() ? std::span<float>() : of_row(std::span(counts_), i);

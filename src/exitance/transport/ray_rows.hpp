@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/mesh/element_locator.hpp"
+#include "exitance/mesh/numbered_leaves.hpp"
 #include "exitance/processes/fetched_values.hpp"
 #include "exitance/transport/stage.hpp"
 #include "exitance/transport/transport_operator.hpp"
@@ -32,6 +32,14 @@ enum class Dealing : std::uint8_t { by_element, by_piece };
 /// latter suffices to gather, and to find each process's own links.
 enum class RowsHeld : std::uint8_t { everywhere, by_owner };
 
+/// Rays of rows: how many, and at which points they start.
+struct RowRays {
+    RayBudget budget;
+    std::uint64_t seed = 1;
+    Dealing dealing = Dealing::by_element;
+    RowsHeld held = RowsHeld::everywhere;
+};
+
 /// Transport by rays. Row i stores the elements that n_i rays hit first on their fronts; the rays are spread over
 /// element i with density cos / pi around its normal. F_ij is the share of them that hits j. Unbiased; a row of a
 /// closed scene sums to exactly 1. If half of the rays of a row are aimed at openings into brighter rooms
@@ -41,9 +49,7 @@ enum class RowsHeld : std::uint8_t { everywhere, by_owner };
 /// On a stop request during construction all rays of the remaining rows are `missed`.
 class RayRows final : public TransportOperator {
   public:
-    RayRows(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
-            RayBudget budget, std::uint64_t seed, Dealing dealing = Dealing::by_element,
-            RowsHeld held = RowsHeld::everywhere, const StopRequest* stop = nullptr);
+    RayRows(const Stage& stage, const NumberedLeaves& leaves, const RowRays& cast, const StopRequest* stop = nullptr);
 
     std::size_t size() const override { return dealt_.count(); }
     void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;

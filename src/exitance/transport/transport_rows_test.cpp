@@ -32,7 +32,7 @@ struct Cube {
     LeafNumbering numbering{tree};
     ElementLocator locator{tree, 6};
     RayRows rows(double rays) const {
-        return RayRows(stage, tree, numbering, locator, {.average = rays, .min = 16, .max = 1024}, 1);
+        return RayRows(stage, {tree, numbering, locator}, {{.average = rays, .min = 16, .max = 1024}, 1});
     }
 };
 
@@ -59,8 +59,8 @@ TEST(RayRows, OfOneSequencePerPieceAreMoreAccurateTogether) {
     const auto square_error = [&](Dealing dealing) {
         std::vector<double> squares(6, 0.0);
         for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-            const RayRows F(cube.stage, cube.tree, cube.numbering, cube.locator, {.average = 8, .min = 8, .max = 8},
-                            seed, dealing);
+            const RayRows F(cube.stage, {cube.tree, cube.numbering, cube.locator},
+                            {{.average = 8, .min = 8, .max = 8}, seed, dealing});
             const std::vector<double> face = light_from_the_ceiling(cube.stage, F, cube.tree, cube.numbering);
             squares[0] += std::pow(face[0] - opposite, 2);
             for (std::size_t wall = 2; wall < 6; ++wall) squares[1] += std::pow(face[wall] - (1 - opposite) / 4, 2);

@@ -111,12 +111,12 @@ GlobalLight solve_classical_matrix(const MethodInput& input) {
     }
     const ElementLocator locator(tree, stage.scene.regions().size());
     if (kind == FormFactorKind::hemicube) {
-        const HemicubeRows F(stage, tree, numbering, locator, hemicube_cells(o));
+        const HemicubeRows F(stage, {tree, numbering, locator}, hemicube_cells(o));
         solve_with(input, tree, numbering, F, light);
         light.work.rays = F.rays(), light.work.form_factors = light.work.links = F.entries();
         return light;
     }
-    const RayRows F(stage, tree, numbering, locator, ray_budget(input.options, input.knobs), o.seed);
+    const RayRows F(stage, {tree, numbering, locator}, {ray_budget(input.options, input.knobs), o.seed});
     solve_with(input, tree, numbering, F, light);
     light.work.rays = light.work.links = F.rays();
     return light;

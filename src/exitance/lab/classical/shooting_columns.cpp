@@ -21,10 +21,11 @@ ShootingColumns::ShootingColumns(const MethodInput& input, const ShootingMesh& m
     if (!o.form_factors || o.form_factors == FormFactorKind::analytic) return;
     const ElementLocator locator(mesh.tree, input.stage.scene.regions().size());
     const LeafNumbering numbering(mesh.tree);
+    const NumberedLeaves leaves{mesh.tree, numbering, locator};
     if (o.form_factors == FormFactorKind::hemicube)
-        hemicubes_.emplace(input.stage, mesh.tree, numbering, locator, hemicube_cells(o));
+        hemicubes_.emplace(input.stage, leaves, hemicube_cells(o));
     else
-        ray_rows_.emplace(input.stage, mesh.tree, numbering, locator, ray_budget(o, input.knobs), o.seed);
+        ray_rows_.emplace(input.stage, leaves, RowRays{ray_budget(o, input.knobs), o.seed});
 }
 
 /// Returns the form factor from a vertex to a patch: exact for the polygon, times the unblocked share of rays from the

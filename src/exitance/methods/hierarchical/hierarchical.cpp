@@ -41,13 +41,13 @@ bool links_deliver(const Hierarchy& h) {
     const ElementLocator locator(h.light.tree, input.stage.scene.regions().size());
     std::vector<Spectrum> light;
     for (ElementId e : numbering.leaves) light.push_back(h.material(e).reflectance * input.direct.fit[e].mean);
-    return is_mostly_open(input.stage, h.light.tree, numbering, locator, light, input.options.seed);
+    return is_mostly_open(input.stage, {h.light.tree, numbering, locator}, light, input.options.seed);
 }
 
 /// Scales the links' light in a closed scene so that no reflected light is lost.
 void conserve(Hierarchy& h) {
     const ElementLocator locator(h.light.tree, h.input.stage.scene.regions().size());
-    if (!is_closed(h.input.stage, h.light.tree, h.light.numbering, locator, h.input.options.seed)) return;
+    if (!is_closed(h.input.stage, {h.light.tree, h.light.numbering, locator}, h.input.options.seed)) return;
     h.input.progress.phase("solve");
     h.relax(true);
     h.input.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(h.system.scale()) - 1)));

@@ -55,10 +55,10 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     light.on_projection = true;
     const ElementLocator locator(light.tree, stage.scene.regions().size());
     light.reflected = reflect_once(stage.scene, light);
-    if (unless_open && is_mostly_open(stage, light.tree, light.numbering, locator, light.reflected, input.options.seed))
-        return std::nullopt;
-    const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
-                       input.options.seed, Dealing::by_piece, RowsHeld::by_owner);
+    const NumberedLeaves numbered{light.tree, light.numbering, locator};
+    if (unless_open && is_mostly_open(stage, numbered, light.reflected, input.options.seed)) return std::nullopt;
+    const RayRows rows(stage, numbered,
+                       {dealt_out(input.knobs.solve_rays), input.options.seed, Dealing::by_piece, RowsHeld::by_owner});
     light.work.rays = rows.rays();
     light.kept = kept_light(rows, stage.scene);
     reflect_again(rows, stage.scene, light);

@@ -19,8 +19,8 @@ void correct_by_rays(Hierarchy& h) {
             h.material(e).reflectance * (light.direct[i] + mean_over(h.sites, h.indirect_light(F_b, e), e));
     });
     const ElementLocator locator(light.tree, h.input.stage.scene.regions().size());
-    const RayRows rows(h.input.stage, light.tree, light.numbering, locator, h.input.knobs.solve_rays,
-                       h.input.options.seed);
+    const RayRows rows(h.input.stage, {light.tree, light.numbering, locator},
+                       {h.input.knobs.solve_rays, h.input.options.seed});
     light.work.rays += rows.rays();
     light.kept = kept_light(rows, h.input.stage.scene);
     const std::size_t before = light.report.iterations;

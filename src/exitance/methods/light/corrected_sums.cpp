@@ -48,8 +48,8 @@ std::vector<ElementFunction> corrected_sums(const RefinementInput& in, double sh
     std::vector<ElementFunction> out = delivered_functions(scene, in.indirect, in.direct, Spectrum(1.0) - in.c, in.c);
     const std::vector<Spectrum> r = mean_residual(in.stage, light, in.indirect, out, share);
     const ElementLocator locator(light.tree, scene.regions().size());
-    const RayRows F(in.stage, light.tree, light.numbering, locator, in.rays, in.seed, Dealing::by_element,
-                    RowsHeld::by_owner);
+    const RayRows F(in.stage, {light.tree, light.numbering, locator},
+                    {in.rays, in.seed, Dealing::by_element, RowsHeld::by_owner});
     std::vector<Spectrum> e = r;
     solve_radiosity(
         {F, leaf_reflectances(scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},

@@ -130,7 +130,7 @@ bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumberin
     std::vector<double> power = leaf_areas(tree, numbering);
     for (std::size_t i = 0; i < power.size(); ++i) power[i] *= mean(radiosity(numbering.leaves[i]));
     const ElementLocator locator(tree, stage.scene.regions().size());
-    return is_closed(stage, tree, numbering, locator, seed, power);
+    return is_closed(stage, {tree, numbering, locator}, seed, power);
 }
 
 }  // namespace

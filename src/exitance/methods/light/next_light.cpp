@@ -41,8 +41,8 @@ std::vector<Spectrum> late_response(const RefinementInput& in, const std::vector
     const GlobalLight& light = in.light;
     const Scene& scene = in.stage.scene;
     const ElementLocator locator(light.tree, scene.regions().size());
-    const RayRows F(in.stage, light.tree, light.numbering, locator, in.rays, in.seed, Dealing::by_element,
-                    RowsHeld::by_owner);
+    const RayRows F(in.stage, {light.tree, light.numbering, locator},
+                    {in.rays, in.seed, Dealing::by_element, RowsHeld::by_owner});
     std::vector<Spectrum> out = r;
     solve_radiosity(
         {F, leaf_reflectances(scene, light.tree, light.numbering), r, leaf_areas(light.tree, light.numbering)},
