@@ -12,25 +12,17 @@
 
 #include "exitance/base/check.hpp"
 #include "exitance/base/parallel.hpp"
-#include "exitance/base/triangulation.hpp"
-#include "exitance/scene/opposed_faces.hpp"
-#include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/glass/ray_fates.hpp"
 #include "exitance/visibility/narrow_gaps.hpp"
-#include "exitance/visibility/rays.hpp"
-#include "exitance/visibility/tracing_frame.hpp"
+#include "exitance/visibility/traced_scene.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t width = 16;  ///< Rays per packet; Embree splits it on machines with narrower vectors.
-constexpr double lift = 0x1p-20;   ///< Share of the scene's size: 16 roundings of a coordinate in single precision.
-constexpr double stack_step = lift / 2;
-/// Height up to which faces above a region are found, as a share of the height at which its rays start: the start and a
-/// face must not be the same in single precision, which has an error of a sixteenth of `lift`.
-constexpr double gap_reach = 1.25;   // derived from 1 + 1 / 16, with a margin
-constexpr double end_margin = 1e-6;  ///< Part of a segment at its end where nothing blocks; derived from `lift`.
-constexpr int retries = 8;           ///< Maximum number of restarts past a ray's own region; one is rarely needed.
+/// Part of a segment at its end where nothing blocks; derived from TracedScene::lift.
+constexpr double end_margin = 1e-6;
+constexpr int retries = 8;  ///< Maximum number of restarts past a ray's own region; one is rarely needed.
 
 /// Owns a reference-counted Embree object and releases it.
 template <class Handle, void (*release)(Handle)>
@@ -44,48 +36,6 @@ class Owned {
 
   private:
     Handle handle_;
-};
-
-struct Float3 {
-    float x, y, z;
-};
-
-/// Converts to single precision. Anything farther away than `far` sizes of the scene is clamped to that distance.
-Float3 to_float(const Vec3& v) {
-    constexpr double far = 1e15;  // derived from Embree, which accepts no coordinates beyond 1.8e18
-    const auto within = [far](double c) { return static_cast<float>(std::clamp(c, -far, far)); };
-    return {within(v.x), within(v.y), within(v.z)};
-}
-
-float without_less_than(float c, float limit) {
-    return std::abs(c) < limit ? 0 : c;
-}
-
-// Embree replaces components of directions of less than 1e-18 by that number with a positive sign, and then tests the
-// packet as if the sign were the ray's own: other rays of the packet pass through walls. Zero is safe.
-
-/// Converts a point, with coordinates below 1e-9 replaced by 0. Others then differ by 0 or by more than 1e-18, so that
-/// directions between points are safe, too.
-Float3 to_safe_point(const Vec3& v) {
-    constexpr float smallest = 1e-9F;
-    const Float3 p = to_float(v);
-    return {without_less_than(p.x, smallest), without_less_than(p.y, smallest), without_less_than(p.z, smallest)};
-}
-
-/// Converts a direction, with components that are too small replaced by 0. `smallest` is derived from Embree's 1e-18,
-/// and `negligible` is far below the rounding of the largest component, 6e-8 of it.
-Float3 to_safe_direction(const Vec3& v) {
-    constexpr float smallest = 2e-18F, negligible = 1e-12F;
-    const Float3 d = to_float(v);
-    const float limit = std::max(smallest, negligible * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
-    return {without_less_than(d.x, limit), without_less_than(d.y, limit), without_less_than(d.z, limit)};
-}
-
-/// The data of a surface that a hit needs, contiguous in memory.
-struct Face {
-    Normal normal;
-    Point corner;
-    RegionId region;
 };
 
 #if EXITANCE_EMBREE_MAJOR == 3
@@ -155,73 +105,30 @@ void filter_glass(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
-/// Triangle mesh in Embree's layout.
-struct Triangles {
-    std::vector<Float3> corners;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-};
-
 }  // namespace
 
-struct RayTracer::Content {
-    const Scene* scene;
-    Point centre;        ///< Origin of Embree's coordinates.
-    double scale;        ///< Power of two by which they are scaled, so that a scene of any size is about 1 wide.
-    TracingFrame frame;  ///< Rotation to them.
-    double lift_off;
+struct RayTracer::Content : TracedScene {
     Owned<RTCDevice, rtcReleaseDevice> device;
     Owned<RTCScene, rtcReleaseScene> rtc;
     std::vector<SurfaceId> surface_of;  ///< Per triangle.
-    Field<SurfaceId, Face> faces;
-    /// The surface on the other side of a sheet; empty if there are no sheets.
-    Field<SurfaceId, SurfaceId> other_side;
-    OpposedFaces opposed;  ///< Tables for sheets whose two sides have different outlines.
-    NarrowGaps gaps;       ///< Places where rays must start lower, because another face is close above.
+    OpposedFaces opposed;               ///< Tables for sheets whose two sides have different outlines.
+    NarrowGaps gaps;                    ///< Places where rays must start lower, because another face is close above.
     Glass glass;
 
     explicit Content(const Scene& s)
-        : scene(&s),
-          centre(s.box().centre()),
-          scale(std::exp2(-std::ilogb(s.size()))),
-          frame(find_tracing_frame(s)),
-          lift_off(lift * s.size()),
+        : TracedScene(s),
           device(rtcNewDevice(nullptr)),
           rtc(rtcNewScene(device)),
-          faces(s.surfaces().size()),
-          other_side(other_sides_of_surfaces(s)),
           opposed(s, other_side, lift_off),
-          gaps(s, reach_of_regions(s, lift_off)),
+          gaps(s, reach_of_regions()),
           glass{RayFates(s.panes(), frame)} {
-        Triangles all;
-        auto& [corners, triangles] = all;
-        for (SurfaceId id : s.surfaces().ids()) {
-            const std::span<const Point> outline = s.outline(id);
-            faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
-            if (is_second_side(s, other_side, id))
-                continue;  // one triangle represents both faces; read() selects the side
-            const auto first = static_cast<std::uint32_t>(corners.size());
-            // Stacked coplanar surfaces are separated, so that the upper one is hit first.
-            const Vec3 lifted = (stack_step * s.size() * s.regions()[faces[id].region].level) * faces[id].normal;
-            for (const Point& p : outline) corners.push_back(local(p + lifted));
-            for (const auto& t : triangulate(outline, s.surfaces()[id].normal)) {
-                triangles.push_back({first + t[0], first + t[1], first + t[2]});
-                surface_of.push_back(id);
-            }
-        }
-        attach(all, nullptr);
-        add_glass();
+        attach(surfaces(surface_of), nullptr);
+        if (!s.panes().empty()) attach(panes(glass.pane_of), &glass);  // the second geometry
         rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
         // The order of triangles in a leaf, and so which of two equally near ones is hit, depends on the number of
         // build threads. A single thread always builds the same tree.
         run_alone([&] { rtcJoinCommitScene(rtc); });
-    }
-
-    static Field<RegionId, double> reach_of_regions(const Scene& s, double lift_off) {
-        Field<RegionId, double> reach;
-        for (const Region& region : s.regions())
-            reach.add(gap_reach * (lift_off + stack_step * s.size() * region.level));
-        return reach;
     }
 
     void attach(const Triangles& all, Glass* filter) {
@@ -241,30 +148,6 @@ struct RayTracer::Content {
         rtcAttachGeometry(rtc, geometry);
     }
 
-    /// Adds the panes as the second geometry, if there are any.
-    void add_glass() {
-        if (scene->panes().empty()) return;
-        Triangles all;
-        for (std::uint32_t number = 0; const Pane& pane : scene->panes()) {
-            const auto first = static_cast<std::uint32_t>(all.corners.size());
-            for (const Point& p : pane.corners) all.corners.push_back(local(p));
-            for (std::uint32_t i = 2; i < pane.corners.size(); ++i) {
-                all.triangles.push_back({first, first + i - 1, first + i});
-                glass.pane_of.push_back(number);
-            }
-            ++number;
-        }
-        attach(all, &glass);
-    }
-
-    Float3 local(const Point& p) const { return to_safe_point(frame(scale * (p - centre))); }
-    Float3 local_direction(const Vec3& d) const { return to_safe_direction(frame(scale * d)); }
-    Vec3 offset(RegionId region) const {
-        if (region.is_none()) return Vec3();
-        const Region& own = scene->regions()[region];
-        return (lift_off + stack_step * scene->size() * own.level) * own.plane.n;
-    }
-
     /// Fills a hit from a lane. Returns false if the ray hit its own region and must be continued from there.
     bool read(const RTCRayHit16& packet, std::size_t lane, const Point& origin, const Vec3& direction, RegionId own,
               RayHit& hit) const {
@@ -280,7 +163,7 @@ struct RayTracer::Content {
         if (other_side.size() > 0 && !other_side[hit.surface].is_none() &&
             dot(faces[hit.surface].normal, direction) > 0)
             hit.surface = other_side[hit.surface];
-        const Face& face = faces[hit.surface];
+        const TracedFace& face = faces[hit.surface];
         if (face.region == own && !own.is_none()) return false;
         hit.region = face.region;
         const double slope = dot(face.normal, direction);
@@ -508,7 +391,7 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
             const auto [from, to] = ends(first + i);
             if (const double height = gap_height(from.x, from.region); height < HUGE_VAL)
                 blocked[first + i] = is_blocked_in_gap(from, height, to);
-            else if (const double height = gap_height(to.at, to.region); height < HUGE_VAL)
+            else if (const double height = gap_height(to.x, to.region); height < HUGE_VAL)
                 blocked[first + i] = is_blocked_in_gap(to, height, from);
         }
     }
