@@ -82,7 +82,7 @@ class RowMaker {
         }
         met_.clear();
         for (std::size_t k = 0; k < workspace_.fronts.size(); ++k) {
-            const auto& [region, y] = workspace_.fronts[k];
+            const auto& [y, region] = workspace_.fronts[k];
             const ElementId leaf = locator_.find(region, y).element;
             if (leaf.is_none()) continue;
             const ElementId base = layout_.number[leaf] == TransportLayout::none ? sources_.parent(leaf) : leaf;
