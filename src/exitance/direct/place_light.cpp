@@ -64,8 +64,8 @@ Spectrum PlaceLight::mirrored_images(const SurfacePoint& at, std::size_t most, s
 }
 
 PlaceLight::Estimate PlaceLight::by_rays(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
-                                         Workspace& room) const {
-    Estimate out = rays_.at(x, n, own, accuracy, room);
+                                         Workspace& room, const RayLight::Spreads* known) const {
+    Estimate out = rays_.at(x, n, own, accuracy, room, known);
     add_mirrored(x, n, own, accuracy, out);
     return out;
 }
@@ -200,7 +200,8 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
         exact_within(on, nullptr, needed / worth_another - preparing_a_place(on, nullptr), accuracy, room, out))
         return;
     out.clear();
-    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, limited, room));
+    const RayLight::Spreads known = rays_.spreads(on.places, on.n, on.own, limited, room);
+    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, limited, room, &known));
 }
 
 }  // namespace exitance

@@ -33,9 +33,9 @@ class PlaceLight {
     /// Returns the light at x on region `own` (none: in free space), W/m^2. It is exact if the variance is 0.
     Estimate at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy, Workspace& room) const;
 
-    /// Like at(), by rays.
-    Estimate by_rays(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
-                     Workspace& room) const;
+    /// Like at(), by rays. `known`: see RayLight::at().
+    Estimate by_rays(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy, Workspace& room,
+                     const RayLight::Spreads* known = nullptr) const;
 
     /// Places of a convex polygon of a region.
     struct Polygon {

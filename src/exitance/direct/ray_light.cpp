@@ -62,32 +62,43 @@ RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
     for (const Pane& pane : direct.occluders().scene().panes()) is_coloured_ |= !is_grey(pane.transmissivity);
 }
 
-RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+/// Returns the variance of a part that decides its number of rays.
+double RayLight::expected_variance(const Part& part, const Spread* known) const {
+    if (!known || part.kind == Part::Kind::piece) return variance(part);
+    const double of_one = part.kind == Part::Kind::sky        ? known->sky
+                          : part.kind == Part::Kind::openings ? known->openings
+                                                              : known->others;
+    return of_one * std::pow(part.rays, -2 * error_exponent);
+}
+
+RayLight::Estimate RayLight::on_side(const Start& start, const LightAccuracy& accuracy, const Spread* known,
                                      Workspace& room) const {
-    const Start start{direct_->receiver(x, n, own), key_of(x, own)};
     Estimate out;
     const double open = find_parts(start.at, accuracy, room);
     for (Part& part : room.parts_) add_rays(start, part, 4 * part.block, room);
     for (bool grows = true; grows;) {
         trace(room);
         out = Estimate();
+        double expected = 0;
         double rates = 0;  // sum of c^(2/5), c the variance of one ray; 2/5 is `power_of_variance`
         for (const Part& part : room.parts_) {
-            const double variance = this->variance(part);
-            out.irradiance += part.light(), out.variance += variance, out.rays += part.rays;
+            out.irradiance += part.light(), out.variance += this->variance(part), out.rays += part.rays;
+            const double variance = expected_variance(part, known);
+            expected += variance;
             rates += std::pow(variance * std::pow(part.rays, 2 * error_exponent), power_of_variance);
         }
         // Less than the light found by a standard deviation: light that is overestimated must not end the search.
         const double least = std::max(mean(out.irradiance) - std::sqrt(out.variance), min_share * open);
         const double allowed = accuracy.allowed(least);
         const double limit = allowed * allowed;
-        if (out.variance <= limit || out.rays >= accuracy.max_rays) break;
+        if (expected <= limit || out.rays >= accuracy.max_rays) break;
         // The variance sum of c_i n_i^(-3/2) is reached with fewest rays by n_i in proportion to c_i^(2/5).
         grows = false;
         const double scale = std::pow(rates / limit, 0.5 / error_exponent);
         for (Part& part : room.parts_) {
             const double wanted =
-                scale * std::pow(variance(part) * std::pow(part.rays, 2 * error_exponent), power_of_variance);
+                scale *
+                std::pow(expected_variance(part, known) * std::pow(part.rays, 2 * error_exponent), power_of_variance);
             const std::uint32_t rays = power_of_two(wanted, 1, std::min(fastest_growth * part.rays, accuracy.max_rays));
             if (rays <= part.rays) continue;
             add_rays(start, part, rays, room);
@@ -127,13 +138,47 @@ double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const L
     return work_of_place + std::clamp(rays, 1.0 * min_pilot, 1.0 * accuracy.max_rays);
 }
 
-RayLight::Estimate RayLight::at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
-                                Workspace& room) const {
+/// Measures the spread at every fourth place.
+RayLight::Spread RayLight::spread_on_side(std::span<const Point> places, const Normal& n, RegionId own,
+                                          const LightAccuracy& accuracy, Workspace& room) const {
+    constexpr std::size_t every = 4;  // derived from the cost: a quarter of the rays
+    Spread sum;
+    double count = 0;
+    for (std::size_t i = every / 2; i < places.size(); i += every, ++count) {
+        on_side({direct_->receiver(places[i], n, own), hash(key_of(places[i], own))}, accuracy, nullptr, room);
+        bool is_shared = false;
+        for (const Part& part : room.parts_) {
+            if (part.kind == Part::Kind::piece) continue;
+            double& of_kind = part.kind == Part::Kind::sky        ? sum.sky
+                              : part.kind == Part::Kind::openings ? sum.openings
+                                                                  : sum.others;
+            of_kind += variance(part) * std::pow(part.rays, 2 * error_exponent);
+            is_shared = true;
+        }
+        if (!is_shared) break;
+    }
+    const double share = 1 / std::max(count, 1.0);
+    return {share * sum.sky, share * sum.openings, share * sum.others};
+}
+
+RayLight::Spreads RayLight::spreads(std::span<const Point> places, const Normal& n, RegionId own,
+                                    const LightAccuracy& accuracy, Workspace& room) const {
     const RegionId behind = direct_->occluders().scene().behind(own);
-    const Estimate front = on_side(x, n, own, accuracy, room);
+    Spreads out{spread_on_side(places, n, own, accuracy, room), {}};
+    if (!behind.is_none()) out.back = spread_on_side(places, -n, behind, accuracy, room);
+    return out;
+}
+
+RayLight::Estimate RayLight::at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                                Workspace& room, const Spreads* known) const {
+    const RegionId behind = direct_->occluders().scene().behind(own);
+    const auto on = [&](const Normal& normal, RegionId side, const Spread* spread) {
+        return on_side({direct_->receiver(x, normal, side), key_of(x, side)}, accuracy, spread, room);
+    };
+    const Estimate front = on(n, own, known ? &known->front : nullptr);
     if (behind.is_none()) return front;
     const double through = direct_->occluders().scene().material(own).through, not_through = 1 - through;
-    const Estimate back = on_side(x, -n, behind, accuracy, room);
+    const Estimate back = on(-n, behind, known ? &known->back : nullptr);
     return {not_through * front.irradiance + through * back.irradiance,
             not_through * front.parallel + through * back.parallel,
             not_through * not_through * front.variance + through * through * back.variance, front.rays + back.rays};

@@ -32,7 +32,9 @@ namespace exitance {
 /// depends on the coordinates of the place alone: every caller gets the same light there.
 ///
 /// A pilot of a few rays per part estimates variances; rays are then added to each part in the proportion that reaches
-/// the required accuracy with fewest. Panes let rays pass at random, in proportion to their transmission. Light of
+/// the required accuracy with fewest. A place that stops as soon as its own rays agree is too dark in the mean: rays
+/// that missed a window agree, too. Places of an element are therefore given numbers of rays that other rays decided
+/// (`Spread`) [Kirk91]. Panes let rays pass at random, in proportion to their transmission. Light of
 /// punctual lights is exact.
 class RayLight {
   public:
@@ -54,8 +56,24 @@ class RayLight {
         Spectrum standard_error() const;
     };
 
-    /// Returns the light at x on region `own` (none: in free space). About 0.2 us per ray.
-    Estimate at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy, Workspace& room) const;
+    /// Variance of one ray to each kind of part, (W/m^2)^2, so that n rays have this times n^(-3/2). Strong emitters
+    /// and suns are not part of it: their light is cut by sharp shadows, and differs from place to place.
+    struct Spread {
+        double sky = 0, openings = 0, others = 0;
+    };
+    /// The spreads on both sides of a surface.
+    struct Spreads {
+        Spread front, back;
+    };
+    /// Measures the spreads at some of the places, by rays that at() never casts.
+    Spreads spreads(std::span<const Point> places, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                    Workspace& room) const;
+
+    /// Returns the light at x on region `own` (none: in free space). `known`: decides the numbers of rays; null: the
+    /// rays themselves do, so that the mean over many places is too small where few rays find light, unless the
+    /// accuracy demands many. About 0.2 us per ray.
+    Estimate at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy, Workspace& room,
+                const Spreads* known = nullptr) const;
 
     /// Forecasts the work of at(), in rays.
     double forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
@@ -98,8 +116,10 @@ class RayLight {
     struct Part;
     struct Start;
     class RayMaker;
-    Estimate on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
-                     Workspace& room) const;
+    Estimate on_side(const Start& start, const LightAccuracy& accuracy, const Spread* known, Workspace& room) const;
+    Spread spread_on_side(std::span<const Point> places, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                          Workspace& room) const;
+    double expected_variance(const Part& part, const Spread* known) const;
     const SkyOpenings& openings() const;
     double find_parts(const SurfacePoint& at, const LightAccuracy& accuracy, Workspace& room) const;
     void add_openings(const SurfacePoint& at, const LightAccuracy& accuracy, Workspace& room) const;

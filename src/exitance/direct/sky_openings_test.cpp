@@ -254,6 +254,46 @@ TEST(RayLight, LightBesideALargeWindowIsNotMissed) {
     }
 }
 
+TEST(RayLight, PlacesOfAnElementAreNotTooDarkWhereFewRaysFindAWindow) {
+    for (const Placing& placing : {Placing(), Placing{.turn = 0.7, .move = {100, -100, 30}}, Placing{.scale = 1e-2}}) {
+        const Rooms rooms{.boxes = 10,
+                          .left = 1,
+                          .right = 2.2,
+                          .sill = 0.9,
+                          .top = 2.1,
+                          .ground = placing.scale * 30,
+                          .placing = placing,
+                          .light = overcast()};
+        const Scene scene = rooms.make();
+        const Stage stage(scene);
+        const RayLight& rays = stage.place_light.rays();
+        PlaceLight::Workspace room;
+        const Normal up{0, 0, 1};
+        const RegionId region = scene.surfaces()[Locator(scene).find(rooms.placing({2, 2.5, 0}), up)].region;
+        constexpr LightAccuracy rough{.absolute = 2};
+        double exact = 0, together = 0, variance = 0, alone = 0;
+        constexpr int elements = 12, places_across = 3;
+        for (int e = 0; e < elements * elements; ++e) {
+            std::vector<Point> places;
+            for (int k = 0; k < places_across * places_across; ++k) {
+                const double u = e % elements + (k % places_across + 0.5) / places_across;
+                const double v = e / elements + (k / places_across + 0.5) / places_across;
+                places.push_back(rooms.placing({4 * u / elements, 5 * v / elements, 0}));
+            }
+            const RayLight::Spreads known = rays.spreads(places, up, region, rough, room);
+            for (const Point& x : places) {
+                exact += mean(stage.direct.irradiance(x, up, region, room.exact));
+                const RayLight::Estimate found = rays.at(x, up, region, rough, room, &known);
+                together += mean(found.irradiance), variance += found.variance;
+                alone += mean(rays.at(x, up, region, rough, room).irradiance);
+            }
+        }
+        EXPECT_LT(std::abs(together - exact), 3 * std::sqrt(variance) + 2e-3 * exact);
+        EXPECT_LT(std::sqrt(variance), 0.03 * exact) << "too noisy to find a bias";
+        EXPECT_LT(alone, 0.95 * exact) << "rays that decide their own number are too dark here";
+    }
+}
+
 TEST(DirectProjection, UsesRaysBetweenManySurfacesBelowASky) {
     // Fewer elements than the projection counts as many.
     const Rooms rooms{.count = 1, .boxes = 80, .left = 0.5, .right = 3.5, .sill = 0.5, .top = 2.5, .light = overcast()};
