@@ -16,9 +16,19 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders of the engine in which numbers control the amount of work.
-const std::vector<std::string> deciding{"links",     "solution",      "gather",
-                                        "evaluate",  "discontinuity", "error",
-                                        "reference", "methods",       "what_if/light_groups"};
+const std::vector<std::string> deciding{"direct",
+                                        "visibility",
+                                        "mesh",
+                                        "transport",
+                                        "links",
+                                        "solution",
+                                        "gather",
+                                        "evaluate",
+                                        "discontinuity",
+                                        "error",
+                                        "reference",
+                                        "methods",
+                                        "what_if/light_groups"};
 
 /// Exceptions, which no solve uses.
 const std::vector<std::string> apart{"evaluate/surface_levels.cpp", "reference/compare.cpp", "methods/options/",
@@ -60,26 +70,34 @@ bool has_hidden_threshold(const std::string& line) {
     return std::regex_search(code, fraction) || std::regex_search(code, divisor);
 }
 
-/// Lines with a number that controls work but has no origin: it is not in the table of calibrated numbers, and no
-/// comment on its line or directly above says what it is derived from, or by which command a constant was measured.
+/// Text of the comment at the end of a line.
+std::string comment_of(const std::string& line) {
+    static const std::regex comment("///?<?(.*)");
+    std::smatch found;
+    return std::regex_search(line, found, comment) ? found[1].str() : "";
+}
+
+/// Lines with a number that controls work but has no origin: it is not in the table of calibrated numbers, and the
+/// comment directly above or on its line does not say what it is derived from, or by which command a constant was
+/// measured.
 std::vector<std::string> unexplained_literals(const std::string& name, std::istream& in) {
-    static const std::regex derived("//.*[dD]erived from "), measured("const.*//.*[mM]easured by `[^`]+`"),
-        by_hand("//.*([gG]iven by|[dD]erived from|[mM]easured) ");
+    static const std::regex derived("[dD]erived from "), measured("[mM]easured by `[^`]+`"), constant("\\bconst"),
+        by_hand("([gG]iven by|[dD]erived from|[mM]easured) ");
     const bool is_by_hand = is_below(measured_by_hand, name);
     std::vector<std::string> out;
-    std::string line;
-    bool is_explained = false;  // by the comment directly above
+    std::string line, said;  // `said`: the comment above, as one line
     for (int number = 1; std::getline(in, line); ++number) {
-        const bool here = std::regex_search(line, derived) || std::regex_search(line, measured) ||
-                          (is_by_hand && std::regex_search(line, by_hand));
-        const bool is_comment = line.find_first_not_of(' ') == line.find("//");
-        if (!here && !is_explained) {
-            const std::vector<double> found = literals(line);
-            const bool is_odd = std::any_of(found.begin(), found.end(), [](double value) { return !is_plain(value); });
-            if (is_odd || (!is_by_hand && has_hidden_threshold(line)))
-                out.push_back(name + ":" + std::to_string(number) + ": " + line);
-        }
-        is_explained = is_comment && (here || is_explained);
+        const std::size_t begin = line.find_first_not_of(' ');
+        said += comment_of(line);
+        if (begin != std::string::npos && line.compare(begin, 2, "//") == 0) continue;
+        const bool is_explained = std::regex_search(said, derived) ||
+                                  (std::regex_search(said, measured) && std::regex_search(line, constant)) ||
+                                  (is_by_hand && std::regex_search(said, by_hand));
+        const std::vector<double> found = literals(line);
+        const bool is_odd = std::any_of(found.begin(), found.end(), [](double value) { return !is_plain(value); });
+        if (!is_explained && (is_odd || (!is_by_hand && has_hidden_threshold(line))))
+            out.push_back(name + ":" + std::to_string(number) + ": " + line);
+        said.clear();
     }
     return out;
 }
@@ -118,6 +136,8 @@ TEST(Literals, AreFoundUnlessTheirOriginIsGiven) {
     EXPECT_EQ(count("x = 0.3 * y;  // measured by `exitance-calibrate a`\n"), 1u) << "a measured number has a name";
     EXPECT_EQ(count("const double a = 1.0 / 7;\nconstexpr int gap_divisor = 7;\nx = y / 3;\n"), 2u);
     EXPECT_EQ(count("// Derived from the rule\n// of Gauss.\nconst double a = 0.77;\nconst double b = 0.3;\n"), 1u);
+    EXPECT_EQ(count("// Measured by\n// `exitance solve a` and b.\nconst double a = 0.77;\n"), 0u);
+    EXPECT_EQ(count("// measured by `exitance solve a`\nx = 0.77;\n"), 1u) << "a measured number has a name";
     EXPECT_EQ(count("print(\"0.7\", 17, 0x1p20);\n"), 0u);
 }
 

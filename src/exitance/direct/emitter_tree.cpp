@@ -124,7 +124,9 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const SurfacePoint&
     const Vec3 d = node.centre - at.x;
     const double d2 = squared_norm(d), distance = std::sqrt(d2), up = dot(at.n, d);
     if (up <= -node.radius) return {number, 0, 0};
-    const double nearest = std::max(distance - node.radius, 0.1 * node.radius);
+    // Derived from a bound that is finite, and so large that clusters around the point are split first.
+    constexpr double min_nearness = 0.1;
+    const double nearest = std::max(distance - node.radius, min_nearness * node.radius);
     const double highest = std::min(1.0, (up + node.radius) / nearest);  // upper bound of the receiver's cosine
     const auto anything = [&](double cosine) {
         return Term{number, 0, node.power / (pi * nearest * nearest) * highest * cosine};

@@ -38,7 +38,9 @@ namespace exitance {
 /// punctual lights is exact.
 class RayLight {
   public:
-    /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light.
+    /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light. Chosen; half
+    /// takes 55% more rays and double as many, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13
+    /// cuts=1 books=0).
     static constexpr double min_share = 0.05;
 
     /// Both arguments must outlive this object.

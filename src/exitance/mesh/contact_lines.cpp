@@ -61,7 +61,10 @@ struct Reach {
 /// Removes lines that change the light too little to justify a split.
 void leave_worthy(std::vector<Segment>& lines, std::span<const Point> outline, double before_cuts, const Normal& n,
                   double tolerance) {
-    constexpr double min_side_share = 0.01, min_depth_share = 0.1;  // shares of the element's width across the line
+    // Shares of the element's width across the line. Chosen. Half of the first takes 31% fewer rays where faces are
+    // close and double 14% more; half of the second 30% fewer and double 23% more: measured by `exitance solve gaps.obj
+    // --error 0.02`. Where furniture touches, both change the rays by 8% at most.
+    constexpr double min_side_share = 0.01, min_depth_share = 0.1;
     std::erase_if(lines, [&](const Segment& line) {
         if (line.height <= 10 * tolerance) return false;
         const Reach reach(outline, line, n);
@@ -156,7 +159,9 @@ std::optional<std::pair<Vec2, Vec2>> part_inside(const ElementTree& tree, Elemen
 
 /// True if a contact in a single point, which separates nothing, remains of a line.
 bool is_point(const std::pair<Vec2, Vec2>& line) {
-    constexpr double min_length = 1e-3;  // share of the element's size
+    // Share of the element's size. Chosen; half and double give the same light, measured by
+    // `exitance solve gaps.obj --error 0.02`.
+    constexpr double min_length = 1e-3;
     return !(length(line.second - line.first) > min_length);
 }
 

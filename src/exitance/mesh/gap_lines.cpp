@@ -42,7 +42,9 @@ double width_at(const Mouth& mouth, const Region& region) {
 /// Positions along a mouth at which the opposite surface is searched: the middles of its thirds.
 constexpr double middle = 0.5;
 constexpr std::array<double, 3> positions_along{1.0 / 6, middle, 5.0 / 6};  // derived from the thirds
-constexpr double min_cosine = 0.9;  ///< Minimum cosine of the angle between the two sides of a gap.
+/// Minimum cosine of the angle between the two sides of a gap. Chosen; half gives the same light, measured by
+/// `exitance solve gaps.obj --error 0.02`. Without gaps, its true error is 26% larger.
+constexpr double min_cosine = 0.9;
 
 /// A region opposite a mouth, its largest distance (metres), and whether it is opposite the mouth's middle.
 struct Opposite {

@@ -29,6 +29,8 @@ class OnJump {
     /// `area`: of the smaller of the two adjacent elements, m^2.
     bool operator()(const Point& a, const Point& b, double area) const {
         if (lines_.empty()) return false;
+        // Sine of the angle between a side and its line. Derived from both being cut along one line: only rounding
+        // turns the side.
         constexpr double parallel = 1e-3;
         const Point middle = 0.5 * (a + b);
         const Vec3 around{tolerance_, tolerance_, tolerance_};

@@ -200,7 +200,9 @@ class DelaunayRefinement {
             }
         given_ = count_;
         const double mean_edge = std::sqrt(2 * area_of(coarse) / static_cast<double>(coarse.corners.size()));
-        // At smaller distances, the number of triangles grows more than their shapes improve.
+        // At smaller distances, the number of triangles grows more than their shapes improve. Chosen; half makes 25%
+        // more triangles, with a mean ratio of radii of 0.345 in place of 0.343, and double 24% fewer, with 0.339:
+        // measured by `exitance solve gaps.obj --method discontinuity --dm-quality delaunay --error 0.05`.
         constexpr double min_distance_share = 0.25;
         nearest_ = min_distance_share * mean_edge;
     }
@@ -324,6 +326,7 @@ class DelaunayRefinement {
         double share = 0.5;
         if (const bool first = is_given(a); first != is_given(b)) {
             const double shell = std::exp2(std::round(std::log2(0.5 * length / nearest_))) * nearest_;
+            // Derived from the nearest power of two, which is 0.35 to 0.71 of the length.
             constexpr double min_share = 0.3;
             share = std::clamp(shell / length, min_share, 1 - min_share);
             if (!first) share = 1 - share;

@@ -149,7 +149,10 @@ Normal PortalFinder::normal(std::size_t room, const CrossingRay& ray, const Poin
         if (met[k] == ray.into) sum += directions[k];
         if (met[k] == room) sum -= directions[k];
     }
-    const bool tells = norm(sum) > 0.1 * static_cast<double>(met.size());
+    // Shorter sums have no clear direction. Chosen; half and double give the same light, measured by
+    // `exitance solve door.obj --error 0.02`.
+    constexpr double min_mean = 0.1;
+    const bool tells = norm(sum) > min_mean * static_cast<double>(met.size());
     return normalized(tells ? sum : ray.to - ray.from);
 }
 
@@ -194,7 +197,9 @@ PortalCell PortalFinder::surrounded(std::size_t room, std::size_t other, const C
     constexpr unsigned lines = 512;
     constexpr int max_searches = 8;
     constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
-    constexpr double around = 0.25;        // neighbourhood on each side, as a share of the rectangle's size
+    // Neighbourhood on each side, as a share of the rectangle's size. Chosen; half takes 37% more rays and double as
+    // many, measured by `exitance solve door.obj --error 0.02`.
+    constexpr double around = 0.25;
     constexpr double grows =
         1.02;  // factor on the area below which it counts as unchanged: derived from 512 random lines
     if (open.points.empty()) return {};
@@ -234,7 +239,9 @@ PortalFinder::Crossing PortalFinder::straightened(std::size_t room, std::size_t 
     };
     const Point a = middle_at(first), b = middle_at(last);
     const Vec3 u = normalized(b - a);
-    // Both middles are within the opening unless an object is in it. The plane then turns; limit its angle.
+    // Both middles are within the opening unless an object is in it. The plane then turns; limit its angle. Chosen;
+    // 0.45 takes 24% more rays and 1, which keeps the first plane, as many, measured by `exitance solve door.obj
+    // --error 0.02`.
     constexpr double min_cosine = 0.9;
     const Vec3 n = crossing.frame.n - dot(crossing.frame.n, u) * u;
     if (!(norm(n) > min_cosine) || !(std::abs(dot(u, normalized(along))) > min_cosine)) return crossing;
@@ -277,7 +284,9 @@ std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, c
             const RegionId region = tree.region(e);
             const Normal& n = stage.scene.regions()[region].plane.n;
             const Point x = tree.patch(e).at(tree.centre(e));
-            sum += tree.area(e) * stage.place_light.at(x, n, region, {.relative = 0.1}, workspace).irradiance;
+            // Chosen; half and double give the same light, measured by `exitance solve office.obj --error 0.02`.
+            constexpr LightAccuracy rough{.relative = 0.1};
+            sum += tree.area(e) * stage.place_light.at(x, n, region, rough, workspace).irradiance;
             area += tree.area(e);
         }
         for (std::size_t i : leaves) out[i] = area > 0 ? sum / area : Spectrum();

@@ -12,7 +12,8 @@ double open_share(const Stage& stage, const NumberedLeaves& leaves, std::span<co
 
 /// Above this open share, links compute light as accurately as required. Below it, links only determine what elements
 /// reflect, and rays gather that light: at a point that sees many surfaces in part, rays over the hemisphere are more
-/// accurate than as many rays between pairs.
+/// accurate than as many rays between pairs. Chosen; 0.45 and 1 choose the same in rooms with a door, measured by
+/// `exitance solve office.obj --error 0.02`.
 constexpr double mostly_open = 0.9;
 
 /// True if open_share() > mostly_open. Casts only an eighth of the rays if the share is far below.

@@ -15,20 +15,27 @@
 namespace exitance {
 namespace {
 
-// The numbers below define what counts as a room of its own. They were chosen by trial and not measured by a command.
+// The numbers below define what counts as a room of its own. They were chosen by trial.
 
-/// A part of the scene is a room if it has at least this share of all area, or of the area that is not outdoors.
+/// A part of the scene is a room if it has at least this share of all area, or of the area that is not outdoors. With
+/// double, a small room joins the large one around it, which takes four times as many rays; with half nothing changes:
+/// measured by `exitance solve keyhole.obj --error 0.02`.
 constexpr double min_share = 0.05;
 /// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
+/// Half and double give the same rooms, measured by `exitance solve office.obj --error 0.02`.
 constexpr double min_detail = 0.001;
-/// An element is outdoors if at least this share of its rays reaches the sky. Under an open sky, half of the rays of a
-/// facade reach it, and most of those of a ground.
+/// An element is outdoors if at least this share of its rays reaches the sky. Derived from facades: under an open sky,
+/// half of their rays reach it, and most of those of a ground.
 constexpr double outdoors = 0.25;
 /// If the scene is at least this many times as large as its rooms, most of its area is ground and sky. Rooms are then
 /// not compared with that area.
 constexpr double far_larger = 20;
-constexpr double flattest = 0.1;       ///< Smallest over largest extent of a room. A flatter part is a gap.
-constexpr double thinnest = 0.03;      ///< Volume of a room over area^(3/2). A part with less volume is a gap.
+/// Smallest over largest extent of a room. A flatter part is a gap. Half and double give the same rooms, measured by
+/// `exitance solve office.obj --error 0.02`.
+constexpr double flattest = 0.1;
+/// Volume of a room over area^(3/2). A part with less volume is a gap. Half and double give the same rooms, measured by
+/// `exitance solve office.obj --error 0.02`.
+constexpr double thinnest = 0.03;
 constexpr std::size_t min_walls = 4;   ///< Minimum number of walls of a room.
 constexpr std::size_t max_rooms = 64;  ///< Maximum number of rooms. Further parts stay joined to others.
 
@@ -37,6 +44,8 @@ constexpr std::size_t max_rooms = 64;  ///< Maximum number of rooms. Further par
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
     // Any direction, derived from one requirement: it is not parallel to the walls of most buildings.
     constexpr Vec3 along{0.73, 0.54, 0.42};
+    // Share of the random part. Chosen; half and double change the rays by 1%, measured by
+    // `exitance solve office.obj --error 0.02`.
     constexpr double chance = 0.1;
     Box box;
     for (ElementId root : tree.roots()) box.add(tree.patch(root).centre());

@@ -6,12 +6,12 @@
 
 namespace exitance {
 
-/// Default of R, the limit on the error of every row. @@R
+/// Default of R, the limit on the error of every row.
 inline constexpr double default_row_error = 1e-3;
 
-/// Relative error of every entry above `smallest_entry`: default, and limits. @@E
+/// Relative error of every entry above `smallest_entry`: default, and limits.
 inline constexpr double default_entry_error = 1e-4;
-inline constexpr double min_entry_error = 1e-12, max_entry_error = 0.1;  // derived from double precision, and use
+inline constexpr double min_entry_error = 1e-12, max_entry_error = 0.1;  // derived from double precision, and from use
 
 /// Entries below need no relative accuracy. Derived from default_row_error: a thousand of them are as much.
 inline constexpr double smallest_entry = 1e-6;
@@ -23,7 +23,7 @@ inline constexpr double max_noise_deviations = 3.5;
 /// Distance of a point from a plane, metres, up to which it lies in the plane. Derived from the rounding of coordinates
 /// in files with eight digits.
 inline double plane_slack(const Occluders& occluders) {
-    constexpr double share = 1e-8;
+    constexpr double share = 1e-8;  // of the scene's size; derived from such files
     return std::max(share * occluders.scene().size(), occluders.rounding());
 }
 

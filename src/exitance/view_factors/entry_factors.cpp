@@ -14,8 +14,9 @@ namespace exitance {
 namespace {
 
 /// Shares of the tolerance: rows that differ by less than `agreeing` are not recomputed, and quadrature uses
-/// `aimed_at`. Both rows may have the same error. In a town, one of 120 pairs within 0.7 of each other was off by more
-/// than the tolerance, up to 1.5 times as much (2.0 at 1e-4); of those within 0.3 one of 7,500, up to 1.2 times.
+/// `aimed_at`. Both rows may have the same error. Measured in a town: one of 120 pairs within 0.7 of each other was off
+/// by more than the tolerance, up to 1.5 times as much (2.0 at 1e-4); of those within 0.3 one of 7,500, up to 1.2
+/// times.
 constexpr double agreeing = 0.3, aimed_at = 0.8;
 /// Numbers of rows and of pairs between two progress reports.
 constexpr std::size_t rows_of_process = 64, pairs_of_process = 512;
@@ -137,10 +138,12 @@ class TableMaker {
             double share;  ///< Tolerance of this round, as a share of the requested one.
             RowWorker::Means means;
         };
-        constexpr Round rounds[] = {{0.2, RowWorker::Means::usual},
-                                    {0.04, RowWorker::Means::usual},
-                                    {0.2, RowWorker::Means::without_lines},
-                                    {0.04, RowWorker::Means::patient}};
+        // A fifth of the tolerance, and a fifth of that.
+        constexpr double finer = 0.2, finest = 0.04;
+        constexpr Round rounds[] = {{finer, RowWorker::Means::usual},
+                                    {finest, RowWorker::Means::usual},
+                                    {finer, RowWorker::Means::without_lines},
+                                    {finest, RowWorker::Means::patient}};
         progress_.phase("look again");
         const std::size_t pairs_a_step = pairs_of_process * processes();
         for (const Round& round : rounds) {

@@ -133,7 +133,7 @@ bool is_determined(const GraySystem& system, std::span<const ThermalSurface> sur
 
 /// An error if a surface sees an opening: its row misses more than the factors' error explains.
 Result<void> check_closed(const SparseFactors& factors) {
-    constexpr double allowed = 0.01;  // rows of usual accuracy miss a tenth of this
+    constexpr double allowed = 0.01;  // derived from default_row_error: rows of that accuracy miss a tenth of this
     std::size_t open = 0;
     double least = 1;
     for (std::size_t i = 0; i < factors.size(); ++i) {

@@ -152,9 +152,11 @@ double OccludedExchange::convergence(const Cell& cell, double d) const {
 double OccludedExchange::integrate_smooth(const Cell& cell, double d, double allowed) {
     const double rho = convergence(cell, d);
     const double whole = cell.area * brightest(d);
-    const double wanted = std::max(allowed, 1e-16 * whole);
+    constexpr double rounding = 1e-16;    // derived from double precision
+    constexpr double least_rho = 1.0001;  // derived from its logarithm, by which is divided
+    const double wanted = std::max(allowed, rounding * whole);
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
-    const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
+    const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, least_rho))))));
     if (points == 2 && cell.count == 4) return cell.two_points;
     if (points > 8) return exact(cell, allowed);  // the cell is too near to the source for Gauss points
     nodes_.clear(), weights_.clear();

@@ -130,7 +130,7 @@ class OccludedExchange {
     double settle_near_cells(int points);
     double integrate_tasks();
 
-    /// Share of the receiver's size; lines nearer to each other are merged.
+    /// Share of the receiver's size; lines nearer to each other are merged. Derived from the rounding of files.
     static constexpr double nearest_line = 1e-6;
     const StopRequest& stop_;
     OccludedPair pair_;

@@ -81,7 +81,7 @@ CheckedRow check_row(const RowScene& ready, const std::vector<double>& F, std::s
         double sum = 0, share = 0;
         for (std::size_t j = 0; j < F.size(); ++j)
             sum += (F[j] - 0.5 * (G1[j] + G2[j])) * x[j], share += 0.5 * (G1[j] + G2[j]) * x[j];
-        const double deviation = std::sqrt(std::max(0.0, share * (1 - share)) / (2 * n) + 0.25 * one);
+        const double deviation = std::sqrt(std::max(0.0, share * (1 - share)) / (2 * n) + one / 4);
         checked.largest_sum_error = std::max(checked.largest_sum_error, std::abs(sum));
         checked.largest_sum_deviation = std::max(checked.largest_sum_deviation, deviation);
         checked.largest_sum_excess = std::max(checked.largest_sum_excess, (std::abs(sum) - options.error) / deviation);

@@ -18,12 +18,12 @@ enum class Use : std::uint64_t { pilot, cast, pair_pilot, pair };
 
 constexpr std::size_t pilot_batches = 4, pilot_rays_a_batch = 256;
 
-/// Costs in units of a cast ray (0.25 us), measured in an office of 446 polygons and a room with 180 blocks.
-constexpr double pair_cost = 12;  ///< Finding the blockers between two faces, and a pair's pilot.
-constexpr double shadow_ray_cost = 0.25;
+/// Costs in units of a cast ray (0.25 us), measured in an office of 446 polygons and a room with 180 blocks: finding
+/// the blockers between two faces, and a pair's pilot; a shadow ray.
+constexpr double pair_cost = 12, shadow_ray_cost = 0.25;
 
-/// Variances decrease with the number of samples n like n^-rate; 1.25 is the rate of stratified samples in four
-/// dimensions for an integrand with a discontinuity.
+/// Variances decrease with the number of samples n like n^-rate. Derived from stratified samples in four dimensions for
+/// an integrand with a discontinuity.
 constexpr double cast_rate = 1.25, pair_rate = 1.25;
 
 constexpr double near_kernel_sizes =  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.

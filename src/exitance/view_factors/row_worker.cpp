@@ -29,8 +29,8 @@ constexpr double max_area_ratio_cluttered = 2;  ///< Like max_area_ratio, if the
 constexpr double entry_contour_share = 1e-4;
 
 /// Limit on the cells into which critical lines may cut a receiver. Cells cost the same at any tolerance; without lines
-/// the work grows with the given power of 1 / tolerance. In an office at 1e-3, up to 300 cells took 0.02 to 2 ms per
-/// pair and one of 60 pairs missed the tolerance; halving alone took four times as long and missed ten.
+/// the work grows with the given power of 1 / tolerance. Measured in an office at 1e-3: up to 300 cells took 0.02 to 2
+/// ms per pair and one of 60 pairs missed the tolerance; halving alone took four times as long and missed ten.
 constexpr double cells_at_a_thousandth = 300, power_of_halving = 0.75;
 
 std::size_t max_cells(double tolerance) {

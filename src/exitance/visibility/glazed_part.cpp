@@ -124,6 +124,7 @@ class GlazedSum {
 
     Spectrum of(std::span<const Vec3> corners, std::span<const Pane* const> panes, int depth = 0) const {
         constexpr int max_depth = 7;
+        // Derived from an error of 1e-3 (glazed_form_factor), since quadratic functions are integrated exactly.
         constexpr double max_variation = 0.04;
         if (is_sliver(corners)) return {};
         if (panes.empty()) return Spectrum(form_factor(corners));

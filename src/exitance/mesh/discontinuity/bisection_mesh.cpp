@@ -78,7 +78,7 @@ double BisectionMesh::longest_edge(std::uint32_t triangle) const {
 
 /// A step of length nudge_ in a direction, but at most a share of the way.
 Vec3 BisectionMesh::inwards(const Vec3& way) const {
-    constexpr double max_share = 0.3;
+    constexpr double max_share = 0.3;  // derived from steps to a triangle's centre, which are to end well inside
     const double distance = norm(way);
     return distance > 0 ? std::min(nudge_ / distance, max_share) * way : Vec3();
 }
