@@ -31,7 +31,7 @@ class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// What requested a stop before the deadline: a user (SIGINT, a caller of the library), SIGTERM, or a limit on
+    /// The cause of a stop before the deadline: a user (SIGINT, a caller of the library), SIGTERM, or a limit on
     /// memory.
     enum class Cause : std::uint8_t { none, interrupt, termination, memory_limit };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "exitance/calibration/error_budget.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/scene/findings.hpp"
@@ -42,8 +43,7 @@ std::string reason_and_remedy(const SolveStatistics& statistics, const SolveOpti
             if (next == statistics.figures.end())
                 return "the time limit ended the solve; allow more time, or request a larger --error";
             const double left = statistics.figures.at(seconds_left);
-            // Longer forecasts say only that the error is out of reach.
-            constexpr double longest_forecast = 1e6;  // s
+            constexpr double longest_forecast = 1e6;  // s; derived from patience: in twelve days nobody waits any more
             if (!(next->second < longest_forecast))
                 return fmt::format(
                     "another attempt would take far longer than the {:.3g} s that are left of the time limit; request "
@@ -85,11 +85,13 @@ std::optional<std::string> message_of_early_end(const SolveStatistics& statistic
     const std::string of_room = statistics.rooms.size() > 1 && room > whole
                                     ? fmt::format(" in the worst room, {:.3g}% in all", 100 * whole)
                                     : "";
-    return error > *requested
-               ? fmt::format("the estimated error is {:.3g}%{}, but {:.3g}% was requested: {}", 100 * error, of_room,
-                             100 * *requested, reason)
-               : fmt::format("the estimated error is {:.3g}%{}, too close to the requested {:.3g}% to be sure: {}",
-                             100 * error, of_room, 100 * *requested, reason);
+    const std::string found = fmt::format("the estimated error is {:.3g}%{}", 100 * error, of_room);
+    if (error > *requested) return fmt::format("{}, but {:.3g}% was requested: {}", found, 100 * *requested, reason);
+    // An attempt for the sake of single bodies ended early.
+    if (error <= (1 - calibrated::estimate_margin) * *requested)
+        return fmt::format("{}, within the requested {:.3g}%, but the last attempt did not finish: {}", found,
+                           100 * *requested, reason);
+    return fmt::format("{}, too close to the requested {:.3g}% to be sure: {}", found, 100 * *requested, reason);
 }
 
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,

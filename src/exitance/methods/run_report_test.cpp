@@ -48,6 +48,8 @@ TEST(RunReport, AnEarlyEndHasTheReasonThatEndedTheSolve) {
         end_of(StopReason::iterations, 0.049, 0.049),
         "the estimated error is 4.9%, too close to the requested 5% to be sure: all attempts were made; request a "
         "larger --error");
+    EXPECT_NE(end_of(StopReason::memory_limit, 0.02, 0.02).find("within the requested 5%, but the last attempt"),
+              std::string::npos);
     EXPECT_NE(end_of(StopReason::memory_limit, 0.2, 0.2).find("the memory limit ended the solve"), std::string::npos);
     EXPECT_NE(end_of(StopReason::interrupt, 0.2, 0.2).find("an interrupt ended the solve"), std::string::npos);
     EXPECT_EQ(end_of(StopReason::divergence, 0.2, 0.2), "");  // has a warning of its own

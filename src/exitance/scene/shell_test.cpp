@@ -32,7 +32,7 @@ Scene walls_with_ceiling(bool own_group) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},   {0, 0, 1},
                 {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {1, 0.9, 1}, {0, 0.9, 1}};
-    d.materials = {{.name = "m", .reflectance = Spectrum(0.5)}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
     d.groups = {"walls", "ceiling"};
     for (const auto& outline :
          std::vector<std::vector<std::uint32_t>>{{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}})
