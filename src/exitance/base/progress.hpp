@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 
@@ -30,10 +31,19 @@ class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// Requests a stop. Async-signal-safe.
-    void interrupt() { interrupted_at_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed); }
+    /// The cause of a stop before the deadline: a user (SIGINT, a caller of the library), SIGTERM, or a limit on
+    /// memory.
+    enum class Cause : std::uint8_t { none, interrupt, termination, memory_limit };
+
+    /// Requests a stop. The cause of the first request is kept. Async-signal-safe.
+    void interrupt(Cause cause = Cause::interrupt) {
+        Cause none = Cause::none;
+        cause_.compare_exchange_strong(none, cause, std::memory_order_relaxed);
+        interrupted_at_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed);
+    }
     void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
 
+    Cause cause() const { return cause_.load(std::memory_order_relaxed); }
     bool interrupted() const { return interrupted_at_.load(std::memory_order_relaxed) != 0; }
     bool out_of_time() const { return Clock::now() >= deadline_; }
     /// Seconds until the deadline; infinite if there is none, negative after it has passed.
@@ -51,6 +61,7 @@ class StopRequest {
     }
 
   private:
+    std::atomic<Cause> cause_{Cause::none};
     std::atomic<Clock::rep> interrupted_at_{0};  ///< Clock time of the interrupt; 0: none.
     Clock::time_point deadline_ = Clock::time_point::max();
 };

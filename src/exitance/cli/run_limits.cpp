@@ -65,9 +65,7 @@ double RunLimits::seconds_left() const {
 }
 
 StopReason RunLimits::reason() const {
-    return over_memory_          ? StopReason::memory_limit
-           : stop_.interrupted() ? StopReason::interrupt
-                                 : StopReason::time_limit;
+    return over_memory_ ? StopReason::memory_limit : reason_of(stop_);
 }
 
 Error RunLimits::error(const std::string& message) const {
@@ -109,7 +107,7 @@ void RunLimits::watch() {
             changed_.wait_until(lock, end_);
         if (is_over_) return;
         const bool passes_memory = looks && is_over_memory();
-        if (passes_memory) over_memory_ = true, stop_.interrupt();
+        if (passes_memory) over_memory_ = true, stop_.interrupt(StopRequest::Cause::memory_limit);
         if (!keeps_ && (passes_memory || Clock::now() >= end_) && is_first_) end_without_result();
     }
 }

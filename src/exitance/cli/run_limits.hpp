@@ -51,7 +51,7 @@ class RunLimits {
     double seconds_left() const;
     /// The signal received since keep(); empty if none was.
     std::optional<ExitCode> signal() const { return signals_ ? signals_->received() : std::nullopt; }
-    /// The reason why stop() was requested: an interrupt or a limit.
+    /// The reason why stop() was requested: a signal or a limit.
     StopReason reason() const;
     /// The error of a run that a limit stopped without a result. `message` ends its sentence.
     Error error(const std::string& message) const;

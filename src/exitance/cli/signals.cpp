@@ -21,7 +21,8 @@ void leave(int signal) {
 
 void on_signal(int signal) {
     if (last_signal.exchange(signal) != 0) leave(signal);
-    if (StopRequest* stop = target.load()) stop->interrupt();
+    if (StopRequest* stop = target.load())
+        stop->interrupt(signal == SIGINT ? StopRequest::Cause::interrupt : StopRequest::Cause::termination);
 }
 
 void install(void (*handler)(int)) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
+#include "exitance/base/loop_progress.hpp"
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/processes/distributed.hpp"
 
@@ -18,12 +20,21 @@ double BodyMeasure::standard_error() const {
     return std::sqrt(std::max(0.0, squares_ / n - m * m) / (n - 1));
 }
 
-std::optional<double> BodyMeasure::error(double requested) const {
-    const double relative_to = reference();
-    if (points_ < min_points || relative_to <= 0) return {};
+namespace {
+
+/// Returns the RMS error relative to a radiosity, W/m^2; empty if noise hides it (`BodyMeasure::error`).
+std::optional<double> resolved_error(double mean_square, double standard_error, double relative_to, double requested) {
+    if (relative_to <= 0) return {};
     const double resolved = std::pow(resolved_errors * requested * relative_to, 2);
-    if (standard_error() > std::max(0.5 * mean_square(), resolved)) return {};
-    return std::sqrt(std::max({mean_square(), standard_error(), 0.0})) / relative_to;
+    if (standard_error > std::max(0.5 * mean_square, resolved)) return {};
+    return std::sqrt(std::max({mean_square, standard_error, 0.0})) / relative_to;
+}
+
+}  // namespace
+
+std::optional<double> BodyMeasure::error(double requested) const {
+    if (points_ < min_points) return {};
+    return resolved_error(mean_square(), standard_error(), reference(), requested);
 }
 
 double BodyMeasure::at_least() const {
@@ -65,6 +76,7 @@ class BodySurvey {
         : c_(check),
           light_of_room_(light_of_room),
           error_(error),
+          max_(max_rays),
           left_(max_rays),
           leaves_(leaves_of_bodies(check)),
           measured_(unmeasured_bodies()),
@@ -90,15 +102,23 @@ class BodySurvey {
     }
     std::vector<PilotPlace> pilots(std::uint32_t body, std::size_t count, std::uint64_t name) const;
     std::size_t work(const CheckPlan& plan, unsigned rays, std::size_t points) const;
-    std::vector<ResidualSample> measure(std::span<const BodyPoint> points) const;
+    std::vector<ResidualSample> measure(std::span<const BodyPoint> points);
     std::vector<PointError> add(std::span<const BodyPoint> points);
     bool measure_closely(std::uint32_t body, const CheckPlan& of_body, unsigned rays);
     bool measure_at_more_points(std::uint32_t body);
+    /// Error of a body by the points of the certificate; empty if these are too few or too noisy.
+    std::optional<double> error_at_points(std::size_t body) const {
+        if (c_.at_points.empty() || c_.at_points[body].points < BodyAtPoints::min_points) return {};
+        const BodyAtPoints& at = c_.at_points[body];
+        return resolved_error(at.mean_square, at.standard_error, measured_[body].reference(), error_);
+    }
 
     const BodyCheck& c_;
     const std::function<double(std::size_t)>& light_of_room_;
     double error_;
-    std::size_t left_;  ///< Rays that remain.
+    const std::size_t max_;     ///< Rays allowed.
+    std::size_t left_;          ///< Rays that remain.
+    double share_shown_ = 0.5;  ///< Share of the phase that is done, for the progress; bodies are its second half.
     std::vector<std::vector<ElementId>> leaves_;
     std::vector<BodyMeasure> measured_;
     std::vector<PointError> close_points_;
@@ -148,8 +168,10 @@ std::size_t BodySurvey::work(const CheckPlan& plan, unsigned rays, std::size_t p
     return static_cast<std::size_t>(2.0 * rays * static_cast<double>(points) * (1 + plan.work));
 }
 
-std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> points) const {
+std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> points) {
     std::vector<ResidualSample> out(points.size());
+    const double done = 1 - 0.5 * static_cast<double>(left_) / static_cast<double>(std::max<std::size_t>(1, max_));
+    LoopProgress progress(c_.progress, points.size(), std::exchange(share_shown_, done), done, "bodies");
     shared_ranges(
         points.size(), 4,
         [&](std::size_t begin, std::size_t end) {
@@ -160,6 +182,7 @@ std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> point
                 c_.sampler.locate(p.place, out[i], w);
                 out[i].r1 = c_.sampler.by_rays(out[i], p.plan, p.rays, hash(p.key, 1), w);
                 out[i].r2 = c_.sampler.by_rays(out[i], p.plan, p.rays, hash(p.key, 2), w);
+                progress.add_one();
             }
         },
         [&](std::size_t i) -> ResidualSample& { return out[i]; }, {"certificate"});
@@ -296,7 +319,7 @@ HiddenErrors BodySurvey::hidden() const {
     HiddenErrors out;
     for (std::uint32_t b = 0; b < measured_.size(); ++b) {
         const double possible = measured_[b].suspected();
-        if (!is_unknown_[b] || possible <= max_body_errors * error_) continue;
+        if (!is_unknown_[b] || possible <= max_body_errors * error_ || error_at_points(b)) continue;
         ++out.bodies;
         if (possible > out.at_most) out.at_most = possible, out.first = c_.bodies.all[b].first;
     }
@@ -308,9 +331,15 @@ std::vector<BodyError> BodySurvey::errors() const {
     for (std::size_t b = 0; b < measured_.size(); ++b) {
         const SceneBody& body = c_.bodies.all[b];
         const BodyMeasure& found = measured_[b];
-        out.push_back({body.surfaces, body.area, found.mean_reflected(),
-                       is_unknown_[b] ? std::nullopt : found.error(error_), found.points(), body.first,
-                       found.at_least()});
+        BodyError error{body.surfaces,  body.area,  found.mean_reflected(), found.error(error_),
+                        found.points(), body.first, found.at_least()};
+        if (is_unknown_[b]) error.error.reset();
+        if (!error.error && (error.error = error_at_points(b))) {
+            const BodyAtPoints& at = c_.at_points[b];
+            error.points = at.points;
+            error.at_least = std::sqrt(std::max(0.0, at.mean_square - at.standard_error)) / found.reference();
+        }
+        out.push_back(error);
     }
     std::stable_sort(out.begin(), out.end(), [](const BodyError& a, const BodyError& b) { return a.area > b.area; });
     return out;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "exitance/base/loop_progress.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/batch_mean.hpp"
@@ -94,6 +95,7 @@ struct Certifier::Content {
     void measure_residuals();
     void measure_p99(Certificate& out);
     void measure_each_body(Certificate& out);
+    std::vector<BodyAtPoints> bodies_at_points() const;
     void check_by_paths(Certificate& out);
     double true_mean(double mean_error) const;
     bool is_rough(const ResidualSample& s, double weight, const SampleSums& all, double light) const;
@@ -149,7 +151,9 @@ void Certifier::Content::measure_residuals() {
     const ResidualSampler sampler = this->sampler();
     if (looks == 0) plan_checks(places);
     const bool may_stop = looks > 0;
-    if (sampler.measure(places, plans, seed, std::span(samples).subspan(before), may_stop ? options.stop : nullptr))
+    LoopProgress progress(options.progress, places.size(), 0, 0.5, "points");
+    if (sampler.measure(places, plans, seed, std::span(samples).subspan(before), may_stop ? options.stop : nullptr,
+                        &progress))
         ++looks;
     else
         samples.resize(before);
@@ -250,6 +254,23 @@ Certificate Certifier::Content::judge() {
     return out;
 }
 
+/// Returns the error of every body at those points of all calls of `measure` that are on it.
+std::vector<BodyAtPoints> Certifier::Content::bodies_at_points() const {
+    std::vector<SampleSums> sums(options.bodies->all.size());
+    std::vector<BodyAtPoints> out(sums.size());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const std::size_t body = options.bodies->of(stage.scene, samples[k].region);
+        sums[body].add(samples[k], samples[k].weight, k), ++out[body].points;
+    }
+    for (std::size_t body = 0; body < out.size(); ++body) {
+        if (!(sums[body].weight > 0)) continue;
+        for (double& square : sums[body].squared) square /= sums[body].weight;
+        const BatchMean error(sums[body].squared);
+        out[body].mean_square = error.mean, out[body].standard_error = error.standard_error;
+    }
+    return out;
+}
+
 /// Measures the error of every body at points on it. A single body has the error of the scene.
 void Certifier::Content::measure_each_body(Certificate& out) {
     if (!options.bodies || !options.places.empty()) return;
@@ -257,8 +278,10 @@ void Certifier::Content::measure_each_body(Certificate& out) {
         const SceneBody& body = options.bodies->all[0];
         bodies = {{body.surfaces, body.area, mean_reflected, out.estimate, samples.size(), body.first}};
     } else {
-        const BodyCheck body_check{stage, indirect,     b,           check, sampler(), *options.bodies,
-                                   late,  options.seed, options.stop};
+        const std::vector<BodyAtPoints> at_points = bodies_at_points();
+        const BodyCheck body_check{
+            stage,        indirect,     b,         check,           sampler(), *options.bodies, late,
+            options.seed, options.stop, at_points, options.progress};
         const auto light = [&](std::size_t room) { return light_of_room(room); };
         MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
         bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;

@@ -95,6 +95,43 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
     }
 }
 
+/// Two furnaces with the same rough error. No rays are left for the bodies, so that the points of the whole scene give
+/// their errors.
+TEST(Certificate, BodiesWithoutPointsOfTheirOwnHaveTheErrorAtThePointsOfTheScene) {
+    SceneDescription d;
+    d.materials = {{"wall", Spectrum(0.5), Spectrum(1.0)}};
+    d.groups = {"large", "small"};
+    const std::vector<std::vector<std::uint32_t>> box = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
+                                                         {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    for (std::uint32_t k = 0; k < 2; ++k) {
+        const double x = 4 * k, size = k == 0 ? 2 : 0.25;
+        for (const double z : {0.0, size})
+            d.points.insert(d.points.end(), {{x, 0, z}, {x + size, 0, z}, {x + size, size, z}, {x, size, z}});
+        for (std::vector<std::uint32_t> face : box) {
+            for (std::uint32_t& corner : face) corner += 8 * k;
+            d.faces.push_back({face, 0, k, 1});
+        }
+    }
+    PlantedError planted(rough, 0.5, std::move(*make_scene(d).scene));
+    planted.stage.rooms = {};  // treat the scene as one room
+    const SceneBodies bodies = find_bodies(planted.scene);
+    ASSERT_EQ(bodies.all.size(), 2u);
+    const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
+    const PointwiseLight b(
+        [&](RegionId region, const Point& y) { return Spectrum(planted.reflected(locator, region, y)); });
+    const PointwiseLight direct([](RegionId, const Point&) { return Spectrum(1.0); });
+    CertificateOptions options{.error = 0.02, .check_rays = 1};
+    options.bodies = &bodies, options.projected = {&direct};
+    Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
+    Certificate found = certifier.measure();
+    certifier.measure_each_body(found);
+    const BodyError &large = certifier.bodies()[0], &small = certifier.bodies()[1];
+    ASSERT_TRUE(large.error);
+    EXPECT_GE(large.points, BodyAtPoints::min_points);
+    EXPECT_NEAR(*large.error, found.estimate, 0.1 * found.estimate);  // it has 98% of the area
+    EXPECT_FALSE(small.error) << "a fiftieth of the points is too few";
+}
+
 /// Forty-nine separate furnaces with the same error. Rays hit rare bright speckles, so that eight points with few rays
 /// make some of so many bodies seem far worse than they are.
 TEST(Certificate, LooksCloselyAtEveryBodyThatMayExceedTheLimit) {

@@ -133,7 +133,8 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPl
 }
 
 bool ResidualSampler::measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans,
-                              std::uint64_t seed, std::span<ResidualSample> samples, const StopRequest* stop) const {
+                              std::uint64_t seed, std::span<ResidualSample> samples, const StopRequest* stop,
+                              LoopProgress* progress) const {
     shared_ranges(
         places.size(), 8,
         [&](std::size_t begin, std::size_t end) {
@@ -146,6 +147,7 @@ bool ResidualSampler::measure(std::span<const WeightedSample> places, std::span<
                     sum_elements(seed, k, plan, samples[k], w);
                 else
                     cast_rays(seed, k, plan, samples[k], w);
+                if (progress) progress->add_one();
             }
         },
         [&](std::size_t k) -> ResidualSample& { return samples[k]; }, {"certificate"});

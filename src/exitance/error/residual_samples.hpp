@@ -1,5 +1,6 @@
 #pragma once
 
+#include "exitance/base/loop_progress.hpp"
 #include "exitance/error/certificate_places.hpp"
 #include "exitance/error/direct_check.hpp"
 #include "exitance/mesh/numbered_leaves.hpp"
@@ -60,9 +61,10 @@ class ResidualSampler {
 
     /// Measures the residual twice at each place; `samples` has one entry per place. `plans` determines how the direct
     /// light at hits of rays from each room is checked. Returns false if a stop was requested before all places were
-    /// measured. O(places x rays), parallel.
+    /// measured. `progress` counts the places. O(places x rays), parallel.
     bool measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans, std::uint64_t seed,
-                 std::span<ResidualSample> samples, const StopRequest* stop = nullptr) const;
+                 std::span<ResidualSample> samples, const StopRequest* stop = nullptr,
+                 LoopProgress* progress = nullptr) const;
 
     /// Sets the position of a sample and the light delivered there.
     void locate(const WeightedSample& place, ResidualSample& sample, Workspace& w) const;

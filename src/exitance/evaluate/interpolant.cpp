@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include "exitance/base/error_share.hpp"
+#include "exitance/base/loop_progress.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/basis/misfit_along.hpp"
@@ -37,6 +39,8 @@ class Interpolation {
             fitted_.resize(out_.tree.size());
             locator_.emplace(indirect_.tree, stage_.scene.regions().size());
             find_even_noise();
+            LoopProgress progress(options_.progress, active.size(), fraction_before_round(round),
+                                  fraction_before_round(round + 1), std::to_string(active.size()) + " elements");
             shared_ranges_of(
                 fitted_.span(), active.size(), 8,
                 [&](std::size_t begin, std::size_t end) {
@@ -47,6 +51,7 @@ class Interpolation {
                         fitted_[e] = round > 0 && stop.requested()
                                          ? Fit(inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)].as_direct()))
                                          : fit(e, room);
+                        progress.add_one();
                     }
                 },
                 [&](std::size_t i) -> Fit& { return fitted_[active[i]]; },

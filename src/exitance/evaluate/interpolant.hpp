@@ -16,7 +16,8 @@ struct InterpolantOptions {
     std::size_t always_allowed = 20'000;
     /// Light of each room, to which its allowed error is proportional, like in LocalPassDemand.
     std::span<const double> light_in = {};
-    std::uint64_t seed = 1;  ///< Selects the places at which the error is measured.
+    std::uint64_t seed = 1;        ///< Selects the places at which the error is measured.
+    Progress* progress = nullptr;  ///< Told how far the fits are; null: nobody.
 };
 
 struct InterpolantReport {

@@ -99,6 +99,22 @@ TEST(PublishedForm, FormsOnConstantElementsAreForecast) {
     }
 }
 
+TEST(PublishedForm, LightThatDoesNotBalanceIsReported) {
+    SolveOptions coarse = with_links(false), fine = coarse;
+    coarse.classical.threshold = 1e3, fine.classical.threshold = 0.005;  // W
+    const auto warnings = [](const SolveOptions& options) {
+        const Result<Solution> solution = solve(options);
+        EXPECT_TRUE(solution);
+        std::size_t count = 0;
+        for (const std::string& warning : solution->statistics.warnings)
+            count += warning.find("of the emitted power") != std::string::npos;
+        EXPECT_EQ(count > 0, solution->statistics.energy.defect > 0.02) << solution->statistics.energy.defect;
+        return count;
+    };
+    EXPECT_EQ(warnings(coarse), 1u);
+    EXPECT_EQ(warnings(fine), 0u);
+}
+
 TEST(PublishedForm, AStopDeliversTheLightSoFar) {
     for (const SolveOptions& options : {classical(Method::progressive), with_links(true), by_tasks(), by_lines()}) {
         Progress progress;

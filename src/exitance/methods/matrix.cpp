@@ -89,7 +89,8 @@ GlobalLight solve_matrix(const MethodInput& input) {
     } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const RayRows F(stage, {light.tree, light.numbering, locator},
-                        {rays_of_rows(input, light), options.seed, Dealing::by_element, RowsHeld::by_owner});
+                        {rays_of_rows(input, light), options.seed, Dealing::by_element, RowsHeld::by_owner},
+                        input.may_give_up ? &input.stop : nullptr);
         if (options.bounces < 0) light.kept = kept_light(F, stage.scene);
         relax_constant_elements(input, F, light);
         light.work.rays = light.work.links = F.rays();

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exitance/calibration/error_budget.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/scene/findings.hpp"
 
 namespace exitance {
@@ -29,10 +33,71 @@ void warn_of_useless_light(SolveStatistics& statistics) {
                     100 * error, is_useless ? "not usable" : "a rough guess"));
 }
 
+namespace {
+
+/// The reason why a solve ended early, and what to do; empty if there is nothing to say.
+std::string reason_and_remedy(const SolveStatistics& statistics, const SolveOptions& options) {
+    switch (statistics.stopped_by) {
+        case StopReason::time_limit: {
+            const auto next = statistics.figures.find(next_attempt_seconds);
+            if (next == statistics.figures.end())
+                return "the time limit ended the solve; allow more time, or request a larger --error";
+            const double left = statistics.figures.at(seconds_left);
+            constexpr double longest_forecast = 1e6;  // s; derived from patience: in twelve days nobody waits any more
+            if (!(next->second < longest_forecast))
+                return fmt::format(
+                    "another attempt would take far longer than the {:.3g} s that are left of the time limit; request "
+                    "a larger --error",
+                    left);
+            return fmt::format(
+                "another attempt would take about {:.3g} s, but {:.3g} s are left of the time limit; allow about "
+                "{:.0f} s more, or request a larger --error",
+                next->second, left, next->second - left);
+        }
+        case StopReason::memory_limit:
+            return "the memory limit ended the solve; allow more memory, or request a larger --error";
+        case StopReason::iterations:
+            return form_of(options) == Form::standard
+                       ? "all attempts were made; request a larger --error"
+                       : "all attempts, or iterations of the method, were made; request a larger --error";
+        case StopReason::unit_limit:
+            return "all units are used; allow more by --max-units, or request a larger --error";
+        case StopReason::interrupt:
+            return "an interrupt ended the solve; run it again";
+        case StopReason::termination:
+            return "SIGTERM ended the solve; run it again";
+        case StopReason::none:
+        case StopReason::divergence:
+            return {};
+    }
+    return {};
+}
+
+}  // namespace
+
+std::optional<std::string> message_of_early_end(const SolveStatistics& statistics, const SolveOptions& options) {
+    const std::optional<double> requested = options.error_demand();
+    if (statistics.converged || !requested || !statistics.relative_error_estimate) return {};
+    const std::string reason = reason_and_remedy(statistics, options);
+    if (reason.empty()) return {};
+    const double whole = *statistics.relative_error_estimate,
+                 room = statistics.relative_error_estimate_worst_room.value_or(whole), error = std::max(whole, room);
+    const std::string of_room = statistics.rooms.size() > 1 && room > whole
+                                    ? fmt::format(" in the worst room, {:.3g}% in all", 100 * whole)
+                                    : "";
+    const std::string found = fmt::format("the estimated error is {:.3g}%{}", 100 * error, of_room);
+    if (error > *requested) return fmt::format("{}, but {:.3g}% was requested: {}", found, 100 * *requested, reason);
+    // An attempt for the sake of single bodies ended early.
+    if (error <= (1 - calibrated::estimate_margin) * *requested)
+        return fmt::format("{}, within the requested {:.3g}%, but the last attempt did not finish: {}", found,
+                           100 * *requested, reason);
+    return fmt::format("{}, too close to the requested {:.3g}% to be sure: {}", found, 100 * *requested, reason);
+}
+
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,
                                                const std::string& where) {
     if (statistics.relative_error_estimate || !statistics.is_stopped() || !has_estimate(options)) return {};
-    if (statistics.stopped_by == StopReason::interrupt)
+    if (statistics.stopped_by == StopReason::interrupt || statistics.stopped_by == StopReason::termination)
         return Error{ErrorCode::limit, "the run was stopped before the first estimate of the error; nothing is written",
                      where, "run it again"};
     return Error{ErrorCode::limit,

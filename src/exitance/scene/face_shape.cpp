@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "exitance/base/triangulation.hpp"
@@ -11,6 +12,16 @@
 #include "exitance/scene/scene_builder.hpp"
 
 namespace exitance {
+namespace {
+
+/// Rounding of corners in a file, m: that of single precision, which glTF has and few text files exceed.
+double rounding_of(std::span<const Point> corners) {
+    double largest = 0;
+    for (const Point& p : corners) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
+}
+
+}  // namespace
 
 bool SceneBuilder::is_bent(std::span<const Point> corners, const Normal& n, double extent) const {
     return out_of_plane(corners, n) > std::max(tol_.place, std::min(tol_.plane, tol_.tilt * extent));
@@ -131,7 +142,7 @@ void SceneBuilder::add_shape(std::uint32_t f, std::span<const std::uint32_t> out
         for (const auto& [a, b, c] : triangulate(shape.corners, n)) add_triangle(f, outline, shape.corners, {a, b, c});
         return;
     }
-    if (off > tol_.place) {
+    if (off > std::max(tol_.place, rounding_of(shape.corners))) {
         if (flattened_.count++ == 0) flattened_.first_line = in_.faces[f].line;
         flattened_.farthest = std::max(flattened_.farthest, off);
     }

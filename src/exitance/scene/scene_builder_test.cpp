@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "exitance/scene/scene.hpp"
 #include "support/scene_sketch.hpp"
@@ -128,6 +129,19 @@ TEST(Checks, BentFacesAreSplitIntoTrianglesAndReportedOnce) {
     EXPECT_EQ(s.findings[0].line, 1);
     EXPECT_NE(s.findings[0].message.find("0.05 m out of plane"), std::string::npos) << s.findings[0].message;
     EXPECT_NE(s.findings[0].message.find("(and 1 more faces out of plane)"), std::string::npos);
+}
+
+TEST(Checks, FacesOutOfPlaneByTheRoundingOfTheirCoordinatesAreNotReported) {
+    // Coordinates of 1,200 m are rounded to 0.14 mm in single precision.
+    const auto quad = [](double x, double off) {
+        return Sketch().add({{x, 0, 0}, {x + 3, 0, 0}, {x + 3, 3, off}, {x, 3, 0}}).light().make();
+    };
+    for (const auto& [x, off, reports] :
+         {std::tuple{1200.0, 1e-5, 0}, std::tuple{1200.0, 1e-3, 1}, std::tuple{0.0, 1e-5, 1}}) {
+        const auto s = quad(x, off);
+        ASSERT_TRUE(s.scene);
+        EXPECT_EQ(count(s, Finding::Kind::repair), reports) << x << " " << off;
+    }
 }
 
 TEST(Checks, ANeedleBelowSinglePrecisionIsRemoved) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "exitance/base/bvh.hpp"
 #include "exitance/base/random.hpp"
@@ -55,6 +57,12 @@ class Inspector {
     void meet();
     void find_open_edges();
     void find_turned_faces();
+    /// The other face at an edge of exactly two faces.
+    std::optional<std::uint32_t> face_across(std::uint32_t e) const;
+    // `first`: the first edge of every face.
+    std::vector<std::vector<std::uint32_t>> patches_of(const std::vector<std::uint32_t>& faces,
+                                                       const std::vector<std::uint32_t>& first) const;
+    bool is_turned(const std::vector<std::uint32_t>& patch, const std::vector<std::uint32_t>& first) const;
     void find_inside_out_bodies();
 
     const Scene& scene_;
@@ -131,6 +139,47 @@ void Inspector::find_open_edges() {
     }
 }
 
+std::optional<std::uint32_t> Inspector::face_across(std::uint32_t e) const {
+    const Meeting& meeting = meetings_[edges_[e].first];
+    if (meeting.count != 2) return {};
+    return edges_[meeting.one == e ? meeting.other : meeting.one].face.value;
+}
+
+/// Divides faces into patches that are connected over edges of exactly two faces.
+std::vector<std::vector<std::uint32_t>> Inspector::patches_of(const std::vector<std::uint32_t>& faces,
+                                                              const std::vector<std::uint32_t>& first) const {
+    std::vector<std::vector<std::uint32_t>> out;
+    std::set<std::uint32_t> left(faces.begin(), faces.end());
+    while (!left.empty()) {
+        std::vector<std::uint32_t>& patch = out.emplace_back(1, *left.begin());
+        left.erase(left.begin());
+        for (std::size_t i = 0; i < patch.size(); ++i)
+            for (std::uint32_t e = first[patch[i]]; e < first[patch[i] + 1]; ++e)
+                if (const auto across = face_across(e); across && left.erase(*across) > 0) patch.push_back(*across);
+    }
+    return out;
+}
+
+/// True if a patch whose faces look the other way than those around it is turned. It is not if it is another object
+/// that merely touches them: a ceiling whose edge is also that of an outer wall, or a board of open shelves.
+bool Inspector::is_turned(const std::vector<std::uint32_t>& patch, const std::vector<std::uint32_t>& first) const {
+    const std::set<std::uint32_t> own(patch.begin(), patch.end());
+    std::set<GroupId> objects;
+    for (const std::uint32_t f : patch) objects.insert(scene_.surfaces()[SurfaceId(f)].group);
+    std::size_t border = 0, shared = 0;  // edges
+    for (const std::uint32_t f : patch)
+        for (std::uint32_t e = first[f]; e < first[f + 1]; ++e) {
+            const std::optional<std::uint32_t> across = face_across(e);
+            if (across && own.contains(*across)) continue;
+            ++border;
+            if (!across) continue;
+            if (objects.contains(scene_.surfaces()[SurfaceId(*across)].group)) return true;
+            ++shared;
+        }
+    // Three of the four sides of a wall, but not two: a ceiling may touch two outer walls.
+    return 3 * shared >= 2 * border;
+}
+
 /// Assigns a side to each face of a connected component (over edges of exactly two faces): equal across an edge that
 /// the faces traverse in opposite directions.
 void Inspector::find_turned_faces() {
@@ -164,8 +213,12 @@ void Inspector::find_turned_faces() {
         const std::size_t fewer = std::min(count, together.size() - count);
         if (!is_orientable || fewer == 0 || 3 * fewer > together.size()) continue;
         const char wrong = count == fewer ? opposite : same;
+        std::vector<std::uint32_t> turned;
         for (const std::uint32_t f : together)
-            if (side[f] == wrong) out_.turned.push_back(SurfaceId(f));
+            if (side[f] == wrong) turned.push_back(f);
+        for (const std::vector<std::uint32_t>& patch : patches_of(turned, first))
+            if (is_turned(patch, first))
+                for (const std::uint32_t f : patch) out_.turned.push_back(SurfaceId(f));
     }
     std::sort(out_.turned.begin(), out_.turned.end());
     for (const SurfaceId s : out_.turned)

@@ -16,7 +16,8 @@ struct Shell {
 
 /// Analyses which edges the faces share. A face is turned if it traverses shared edges in the same direction as its
 /// neighbours, and if at most a third of its connected faces are like it; otherwise it is undecidable which part is
-/// wrong. Edges of more than two faces connect nothing. O(n log n) in edges.
+/// wrong. Faces of another object that share less than two thirds of their border edges with those neighbours only
+/// touch them, and are not turned. Edges of more than two faces connect nothing. O(n log n) in edges.
 Shell inspect_shell(const Scene& scene);
 
 /// Returns the message and hint about an inside-out body; `group` is the group of its first face.

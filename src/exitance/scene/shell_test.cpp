@@ -27,6 +27,25 @@ TEST(Shell, ATurnedFaceIsFoundByItsNeighbours) {
     EXPECT_NE(findings[0].message.find("'all'"), std::string::npos);
 }
 
+/// Five outer walls of a box, and a ceiling inside that shares one edge with them. `own_group`: it is another object.
+Scene walls_with_ceiling(bool own_group) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},   {0, 0, 1},
+                {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {1, 0.9, 1}, {0, 0.9, 1}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
+    d.groups = {"walls", "ceiling"};
+    for (const auto& outline :
+         std::vector<std::vector<std::uint32_t>>{{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}})
+        d.faces.push_back({.corners = outline});
+    d.faces.push_back({.corners = {4, 9, 8, 5}, .group = own_group ? 1u : 0u});
+    return std::move(*make_scene(d).scene);
+}
+
+TEST(Shell, AnotherObjectThatTouchesAlongOneEdgeIsNotTurned) {
+    EXPECT_TRUE(inspect_shell(walls_with_ceiling(true)).turned.empty());
+    EXPECT_EQ(inspect_shell(walls_with_ceiling(false)).turned, std::vector<SurfaceId>{SurfaceId(5)});
+}
+
 TEST(Shell, AMissingFaceLeavesItsEdgesOpen) {
     std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
     faces.pop_back();

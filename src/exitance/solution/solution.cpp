@@ -5,13 +5,27 @@
 namespace exitance {
 namespace {
 
-constexpr std::array<std::string_view, 7> stop_reason_names{"",           "interrupt",  "time limit", "memory limit",
-                                                            "iterations", "divergence", "unit limit"};
+constexpr std::array<std::string_view, 8> stop_reason_names{"",           "interrupt",  "time limit", "memory limit",
+                                                            "iterations", "divergence", "unit limit", "termination"};
 
 }  // namespace
 
 std::string_view name_of(StopReason reason) {
     return stop_reason_names[static_cast<std::size_t>(reason)];
+}
+
+StopReason reason_of(const StopRequest& stop) {
+    switch (stop.cause()) {
+        case StopRequest::Cause::interrupt:
+            return StopReason::interrupt;
+        case StopRequest::Cause::termination:
+            return StopReason::termination;
+        case StopRequest::Cause::memory_limit:
+            return StopReason::memory_limit;
+        case StopRequest::Cause::none:
+            return StopReason::time_limit;
+    }
+    return StopReason::time_limit;
 }
 
 StopReason stop_reason_of(std::string_view name) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/base/run_seconds.hpp"
 #include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
@@ -79,16 +80,19 @@ struct DiscontinuityCounts {
 
 /// Why a solve ended before it reached what was requested.
 enum class StopReason : std::uint8_t {
-    none,  ///< It was not stopped.
-    interrupt,
+    none,       ///< It was not stopped.
+    interrupt,  ///< SIGINT, or a stop request of a caller of the library.
     time_limit,
     memory_limit,
     iterations,  ///< All attempts, or iterations of a published form, were used.
     divergence,  ///< Light grew from iteration to iteration.
-    unit_limit,  ///< Growing cells had all the units that were requested.
+    unit_limit,   ///< Growing cells had all the units that were requested.
+    termination,  ///< SIGTERM.
 };
 /// Returns the name in files and messages, such as "time limit"; empty for none.
 std::string_view name_of(StopReason reason);
+/// Returns the reason why a stop was requested: that of its first cause, else the time limit.
+StopReason reason_of(const StopRequest& stop);
 /// Returns the reason of a name; none for unknown names.
 StopReason stop_reason_of(std::string_view name);
 

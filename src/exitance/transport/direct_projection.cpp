@@ -1,8 +1,10 @@
 #include "exitance/transport/direct_projection.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "exitance/base/error_share.hpp"
+#include "exitance/base/loop_progress.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -94,7 +96,7 @@ class Projector {
         if (active.size() > few_elements || has_open_sky())
             share_ = share_of(mean_weighted_light(stage_, out_.tree, active, stop_));
         for (int depth = 0; !active.empty(); ++depth) {
-            find_smoothing(active);
+            find_smoothing(active, depth);
             fit_all(active, depth);
             if (options_.may_give_up && stop_.requested()) return {};
             if (depth == 0 && !many_)
@@ -159,13 +161,21 @@ class Projector {
     /// Distance smooths the light that elements reflect, so that their error may be several times the requested one
     /// (`calibrated::direct_tolerance`). Where it arrives unsmoothed, it may not. In crowds, errors are judged
     /// together, and most elements are smaller than the distances between them.
-    void find_smoothing(const std::vector<ElementId>& active) {
+    void find_smoothing(const std::vector<ElementId>& active, int depth) {
         smoothing_.resize(out_.tree.size(), 1);
         if (is_crowd_) return;
         const double smoothed = 1 / (calibrated::direct_tolerance * calibrated::direct_tolerance);
-        const std::vector<float> unsmoothed = unsmoothed_shares(stage_, out_.tree, active, stop_);
+        LoopProgress progress(options_.progress, active.size(), fraction_before_round(depth), before_fits(depth),
+                              std::to_string(active.size()) + " elements");
+        const std::vector<float> unsmoothed = unsmoothed_shares(stage_, out_.tree, active, stop_, &progress);
         for (std::size_t i = 0; i < active.size(); ++i)
             smoothing_[active[i]] = static_cast<float>(smoothed / (smoothed + (1 - smoothed) * unsmoothed[i]));
+    }
+
+    /// Fraction of the projection that is done before the fits of a round, for the progress. They take most of its
+    /// time.
+    static double before_fits(int depth) {
+        return fraction_before_round(depth) + (fraction_before_round(depth + 1) - fraction_before_round(depth)) / 4;
     }
 
     NoiseAllowed noise_on(ElementId e) const {
@@ -199,12 +209,17 @@ class Projector {
                 stage_, out_.tree, active, ErrorShare::small_area(stage_.area, active.size()),
                 [&](ElementId e) { return noise_on(e); }, out_.fit, stop_);
         found_.assign(active.size(), {});
+        LoopProgress progress(options_.progress, active.size(), before_fits(depth), fraction_before_round(depth + 1),
+                              std::to_string(active.size()) + " elements");
         shared_ranges_of(
             std::span(found_), active.size(), 8,
             [&](std::size_t begin, std::size_t end) {
-                if (options_.may_give_up && stop_.requested()) return;
                 DirectFitRoom room;
-                for (std::size_t i = begin; i < end; ++i) found_[i] = fit(active[i], depth, room);
+                for (std::size_t i = begin; i < end; ++i) {
+                    if (options_.may_give_up && stop_.requested()) return;
+                    found_[i] = fit(active[i], depth, room);
+                    progress.add_one();
+                }
             },
             [&](std::size_t i) -> DirectFit& { return found_[i]; },
             {"direct light", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});

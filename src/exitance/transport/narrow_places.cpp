@@ -87,13 +87,15 @@ double unsmoothed_share(const Stage& stage, const ElementTree& tree, ElementId e
 }  // namespace
 
 std::vector<float> unsmoothed_shares(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
-                                     const StopRequest& stop) {
+                                     const StopRequest& stop, LoopProgress* progress) {
     std::vector<float> out(leaves.size());
     shared_ranges(
         leaves.size(), 256,
         [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end && !stop.requested(); ++i)
+            for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
                 out[i] = static_cast<float>(unsmoothed_share(stage, tree, leaves[i]));
+                if (progress) progress->add_one();
+            }
         },
         [&](std::size_t i) -> float& { return out[i]; }, {"narrow places"});
     return out;

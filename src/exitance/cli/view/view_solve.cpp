@@ -61,8 +61,9 @@ std::string ViewSolve::describe_end(const SolveStatistics& statistics) const {
                                   ? fmt::format("estimated error {:.2g}%", 100 * *statistics.relative_error_estimate)
                                   : "the error is not known";
     const StopReason why = statistics.stopped_by == StopReason::interrupt ? limits_.reason() : statistics.stopped_by;
+    const bool is_signal = why == StopReason::interrupt || why == StopReason::termination;
     const std::string end = statistics.converged            ? "reached"
-                            : why == StopReason::interrupt  ? "stopped"
+                            : is_signal                     ? "stopped"
                             : why == StopReason::iterations ? "not reached"
                                                             : fmt::format("stopped by the {}", name_of(why));
     return fmt::format("{}: {}, {:.2g}% requested", end, error, 100 * arguments_.error);

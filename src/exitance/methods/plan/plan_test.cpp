@@ -53,5 +53,17 @@ TEST(Forecast, MatchesTheSolve) {
     }
 }
 
+/// The mesh for a millionth is never made: it has millions of elements.
+TEST(Forecast, ExtrapolatesMeshesThatWouldBeTooLarge) {
+    const Scene scene = built_scene("cornell");
+    const Result<Forecast> fine = forecast_solve(scene, {.error = 1e-6}),
+                           coarse = forecast_solve(scene, {.error = 0.01});
+    ASSERT_TRUE(fine && coarse);
+    EXPECT_GT(fine->solve_elements, 1'000'000u);
+    EXPECT_GT(fine->solve_elements, 100 * coarse->solve_elements);
+    EXPECT_GT(fine->memory_bytes, 10 * coarse->memory_bytes);
+    EXPECT_GT(fine->seconds, coarse->seconds);
+}
+
 }  // namespace
 }  // namespace exitance

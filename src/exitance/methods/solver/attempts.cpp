@@ -54,6 +54,7 @@ void StandardSolver::find_light() {
     const bool reflects = options_.bounces != 0 && stage_.has_indirect_light();
     if (!reflects) return solve_direct_light();
     solve_indirect_light();
+    warn_of_rooms();
     warn_of_bodies();
 }
 
@@ -99,7 +100,10 @@ void StandardSolver::solve_indirect_light() {
         // Far from the target error, a new plan for it is faster than refinement steps, each of which leaves about half
         // of the error.
         if (is_lowered) next = NextAttempt{.finer = {.knobs = first_knobs(plan_, stage_, *demand), .method = true}};
-        if (!next) return stop_early(StopReason::time_limit);
+        if (!next) {
+            record_missing_time(next_attempt(*demand).finer.work * as_first(watch.seconds()));
+            return stop_early(StopReason::time_limit);
+        }
         if (!next->forecast.empty()) progress_.note(next->forecast);
         progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: {}", 100 * certificate_.largest(), 100 * *demand,
                                    next->is_step        ? "refining the delivered elements"
@@ -203,8 +207,9 @@ double StandardSolver::not_local(const ErrorParts& parts) const {
 bool StandardSolver::refines_bodies(double demand, double last_seconds) {
     const double limit = ErrorBudget(demand).body(), worst = certificate_.worst_body.value_or(0);
     if (!holds_bodies() || !gathers() || sums_ || !body_demand_.needs_attempt(statistics().bodies, worst, limit) ||
-        attempt_ == attempt_limit() || is_intermediate() || as_first(last_seconds) > common_seconds_left(stop_))
+        attempt_ == attempt_limit() || is_intermediate())
         return false;
+    if ((lacked_time_ = as_first(last_seconds) > common_seconds_left(stop_))) return false;
     // A refinement step keeps sufficiently accurate results. Next to near surfaces, it replaces the method's elements
     // by the delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
     const bool is_first = body_demand_.begin_attempt(worst);

@@ -30,9 +30,10 @@ void StandardSolver::project_direct() {
                                                   {.mesh = knobs_.solve_mesh,
                                                    .tolerance = knobs_.direct_tolerance,
                                                    .min_area = options_.min_area,
-                                                   .may_give_up = direct_.tree.size() > 0,
+                                                   .may_give_up = direct_.tree.size() > 0 || light_is_dropped_at_stop(),
                                                    .bodies = views ? &*views : nullptr,
-                                                   .body_tolerance = tolerance_of},
+                                                   .body_tolerance = tolerance_of,
+                                                   .progress = &progress_},
                                                   stop_);
     if (fresh.tree.size() > 0) {
         const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
@@ -41,6 +42,10 @@ void StandardSolver::project_direct() {
         unscaled_.direct = inverse(scale);
         share_on_node(direct_.fit.span());  // this array does not change any more, so processes of a node can share it
     }
+}
+
+bool StandardSolver::light_is_dropped_at_stop() const {
+    return !has_light() && !show_ && has_estimate(options_) && options_.bounces != 0 && stage_.has_indirect_light();
 }
 
 void StandardSolver::project_coarsely() {

@@ -12,6 +12,7 @@
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/solve_report.hpp"
+#include "exitance/methods/solver/place_of_room.hpp"
 #include "exitance/processes/distributed.hpp"
 
 namespace exitance {
@@ -29,7 +30,7 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
     options.light_in = rooms_.light_in(), options.allowed_in = rooms_.allowed_in();
     options.bounces = options_.bounces;
     options.bodies = &bodies();
-    options.stop = &stop_;
+    options.stop = &stop_, options.progress = &progress_;
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
     // With a limited number of reflections, the gathered light has one reflection less than the delivered light.
     std::optional<ElementFunction> older;
@@ -106,14 +107,44 @@ void Solver::warn_of_hidden_errors() {
     if (hidden.bodies == 0) return;
     const Scene& scene = stage_.scene;
     const Point at = centroid(scene.outline(hidden.first));
-    const bool is_stopped = statistics().is_stopped() || stop_.requested();
     warn(
         fmt::format("the light of '{}' (near {:.4g}, {:.4g}, {:.4g}) may be wrong by up to {:.3g}%{}: measuring the "
                     "errors of all bodies would take too many rays; {}",
                     scene.groups()[scene.surfaces()[hidden.first].group], at.x, at.y, at.z, 100 * hidden.at_most,
                     hidden.bodies > 1 ? fmt::format(", and that of {} more by less", hidden.bodies - 1) : "",
-                    is_stopped ? "the solve was stopped: with more time or memory, more of them are known"
-                               : "a smaller --error makes more of them known"));
+                    advice_at_end("makes more of them known")));
+}
+
+std::string Solver::advice_at_end(std::string_view effect) const {
+    StopReason why = solution_.statistics.stopped_by;
+    if (why == StopReason::none && stop_.requested()) why = reason_of(stop_);
+    switch (why) {
+        case StopReason::time_limit:
+            return fmt::format("the time limit ended the solve: more time {}", effect);
+        case StopReason::memory_limit:
+            return fmt::format("the memory limit ended the solve: more memory {}", effect);
+        case StopReason::interrupt:
+        case StopReason::termination:
+            return fmt::format("the solve was stopped: a complete run {}", effect);
+        default:
+            return lacked_time_ ? fmt::format("another attempt did not fit into the time limit: more time {}", effect)
+                                : fmt::format("a smaller --error {}", effect);
+    }
+}
+
+void Solver::warn_of_rooms() {
+    const std::optional<double> demand = options_.error_demand();
+    const std::vector<RoomError>& rooms = statistics().rooms;
+    if (!demand || statistics().converged || rooms.empty() || rooms.size() != stage_.rooms.count()) return;
+    const double limit = margin(certificate_.points) * *demand;
+    const auto worst = std::max_element(rooms.begin(), rooms.end(),
+                                        [](const RoomError& a, const RoomError& b) { return a.error < b.error; });
+    if (worst->error <= limit) return;
+    const auto wrong =
+        std::count_if(rooms.begin(), rooms.end(), [&](const RoomError& room) { return room.error > limit; });
+    warn(fmt::format("the light of the room {} is wrong by about {:.3g}%, where {:.3g}% was requested{}",
+                     place_of_room(stage_, static_cast<std::size_t>(worst - rooms.begin())), 100 * worst->error,
+                     100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
 }
 
 void Solver::warn_of_bodies() {
@@ -131,17 +162,12 @@ void Solver::warn_of_bodies() {
     const Scene& scene = stage_.scene;
     const Surface& face = scene.surfaces()[worst->first];
     const Point at = centroid(scene.outline(worst->first));
-    const bool lacked_time = statistics().stopped_by == StopReason::time_limit || stop_.requested();
-    const bool lacked_memory = statistics().stopped_by == StopReason::memory_limit;
-    const char* const advice = lacked_time     ? "the solve was stopped: more time corrects it"
-                               : lacked_memory ? "the solve was stopped: more memory corrects it"
-                                               : "a smaller --error corrects it";
-    warn(
-        fmt::format("the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
-                    "more than three times the {:.3g}% requested for the whole{}; {}",
-                    scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x,
-                    at.y, at.z, 100 * *worst->error, 100 * *demand,
-                    wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : "", advice));
+    warn(fmt::format(
+        "the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
+        "more than three times the {:.3g}% requested for the whole{}; {}",
+        scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x, at.y, at.z,
+        100 * *worst->error, 100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : "",
+        advice_at_end("corrects it")));
 }
 
 }  // namespace exitance

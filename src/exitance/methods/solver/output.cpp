@@ -7,6 +7,7 @@
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/solve_report.hpp"
 
 namespace exitance {
@@ -29,7 +30,7 @@ bool StandardSolver::make_discontinuity() {
         add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
     statistics().seconds[RunPart::mesh] += report.mesh_seconds;
     statistics().seconds[RunPart::direct] += report.direct_seconds;
-    if (report.interrupted) stop_early(stop_.interrupted() ? StopReason::interrupt : StopReason::time_limit);
+    if (report.interrupted) stop_as_requested();
     const bool follows_shadows = !solution_.discontinuity.empty();
     if (follows_shadows) warn_of_lines();
     // The reported mesh must not depend on whether there was a time limit.
@@ -53,17 +54,22 @@ double StandardSolver::interpolant_scale() const {
                                            : mean_direct_light(stage_, direct_).of_errors();
 }
 
-ElementFunction StandardSolver::plain_elements(InterpolantReport& report) const {
+ElementFunction StandardSolver::plain_elements(InterpolantReport& report, Progress* progress) const {
     const double error = options_.error_interpolant.value_or(ErrorBudget(options_.error_target()).exported_mesh());
     // Fits weigh errors by `light_weight`, which is not 1 on black surfaces.
     const bool is_black = !(certificate_.mean_reflected > 0) && !(mean_direct_light(stage_, direct_).reflected > 0);
     const double counted = interpolant_scale() * (is_black ? mean(light_weight(Material{})) : 1);
-    return make_interpolant(stage_, direct_, solution_.indirect, solution_.direct_share,
-                            {.tolerance = error * counted, .light_in = rooms_.light_in(), .seed = options_.seed},
-                            report, stop_);
+    return make_interpolant(
+        stage_, direct_, solution_.indirect, solution_.direct_share,
+        {.tolerance = error * counted, .light_in = rooms_.light_in(), .seed = options_.seed, .progress = progress},
+        report, stop_);
 }
 
 void StandardSolver::make_exported_mesh() {
+    if (stop_.requested() && light_is_dropped_at_stop()) {
+        solution_.interpolant = dark(stage_);
+        return;
+    }
     const bool follows_shadows = makes_discontinuity_mesh() && make_discontinuity();
     progress_.phase("reconstruct");
     if (follows_shadows) {
@@ -73,7 +79,7 @@ void StandardSolver::make_exported_mesh() {
         statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
     } else {
         InterpolantReport report;
-        solution_.interpolant = plain_elements(report);
+        solution_.interpolant = plain_elements(report, &progress_);
         const double scale = interpolant_scale();
         const double own = scale > 0 ? report.error / scale : 0;
         if (statistics().relative_error_estimate && !report.interrupted)
@@ -84,6 +90,7 @@ void StandardSolver::make_exported_mesh() {
 }
 
 void StandardSolver::record_energy() {
+    if (stop_.requested() && light_is_dropped_at_stop()) return;
     Solver::record_energy();
     EnergyBalance& energy = statistics().energy;
     energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);

@@ -63,6 +63,7 @@ void PublishedSolver::find_light() {
     if (attempt_ == 1) aim_ = demand.value_or(options_.error_target());
     snapshots_.emplace(options_.snapshots, [this](const Snapshots::Moment& moment) { show_snapshot(moment); });
     make_attempts(demand);
+    warn_of_rooms();
     warn_of_bodies();
 }
 
@@ -104,7 +105,10 @@ bool PublishedSolver::aim_lower(double demand, double last_seconds) {
     // About four times as many links and nodes are needed to halve the error.
     constexpr double cost_of_finer = 4, min_factor = 0.5;
     if (attempt_ == attempt_limit()) return stop_early(StopReason::iterations), false;
-    if (common_seconds_left(stop_) < cost_of_finer * last_seconds) return stop_early(StopReason::time_limit), false;
+    if (common_seconds_left(stop_) < cost_of_finer * last_seconds) {
+        record_missing_time(cost_of_finer * last_seconds);
+        return stop_early(StopReason::time_limit), false;
+    }
     aim_ *= std::max(min_factor, calibrated::part_aim * demand / certificate_.largest());
     progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: solving again for {:.2f}%",
                                100 * certificate_.largest(), 100 * demand, 100 * aim_));
@@ -192,6 +196,22 @@ void PublishedSolver::make_exported_mesh() {
     progress_.phase("reconstruct");
     direct_ = make_mesh(solution_);
     statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
+}
+
+void PublishedSolver::record_energy() {
+    Solver::record_energy();
+    const EnergyBalance& energy = statistics().energy;
+    // The defect is the mean error of the absorbed light, relative to the emitted light, and thus at most its RMS
+    // error.
+    if (has_estimate(options_) || options_.bounces >= 0 || stop_.requested() || statistics().is_stopped() ||
+        energy.defect <= options_.error_target())
+        return;
+    const bool is_missing = energy.absorbed + energy.escaped < energy.emitted;
+    warn(
+        fmt::format("the light is wrong by {:.3g}% in the mean: so much of the emitted power {}; the settings of the "
+                    "published form do not suit this scene, and finer ones help (--threshold, --min-area, "
+                    "--mesh-size, --residual)",
+                    100 * energy.defect, is_missing ? "is neither absorbed nor escapes" : "is absorbed in excess"));
 }
 
 }  // namespace exitance

@@ -15,6 +15,9 @@ class PublishedSolver final : public Solver {
     Result<void> fit_memory() override { return {}; }  // published forms stop refining at the limit
     void find_light() override;
     void make_exported_mesh() override;
+    /// Warns of a form without an error estimate whose light misses, or has in excess, a larger share of the emitted
+    /// power than the error that a solve allows by default.
+    void record_energy() override;
     int attempt_limit() const override { return max_attempts; }
     void archive_own(ArchiveReader& a) override { a(aim_); }
     void archive_own(ArchiveWriter& a) override { a(aim_); }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "exitance/base/memory.hpp"
@@ -12,6 +13,7 @@
 #include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/options/support.hpp"
+#include "exitance/methods/run_report.hpp"
 #include "exitance/methods/solve_archive.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -143,6 +145,11 @@ void Solver::record_zero_error() {
 void Solver::stop_early(StopReason why) {
     statistics().stopped_by = why;
     statistics().converged = false;
+}
+
+void Solver::record_missing_time(double seconds) {
+    statistics().figures[next_attempt_seconds] = seconds;
+    statistics().figures[seconds_left] = std::max(0.0, common_seconds_left(stop_));
 }
 
 void Solver::run_method(double aim, Snapshots* snapshots) {

@@ -51,8 +51,10 @@ class Solver {
     /// Records an error of zero: nothing reflects, and direct light is exact.
     void record_zero_error();
     void stop_early(StopReason why);
-    /// Records that a stop was requested, as an interrupt or a time limit.
-    void stop_as_requested() { stop_early(stop_.interrupted() ? StopReason::interrupt : StopReason::time_limit); }
+    /// Records that a stop was requested, and why.
+    void stop_as_requested() { stop_early(reason_of(stop_)); }
+    /// Records that another attempt, of this many seconds, does not fit into the time left.
+    void record_missing_time(double seconds);
     /// Returns true if an attempt has delivered light with an error estimate.
     bool has_light() const { return certificate_.points > 0; }
     /// True if a stop was requested and an earlier attempt has a result to keep.
@@ -81,6 +83,11 @@ class Solver {
     bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
     /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
+    /// Warns of the worst room if the solve ended although the error of a room was larger than requested.
+    void warn_of_rooms();
+    /// Advice for the end of a warning about errors that remain, by the reason why the solve ended. `effect`: what the
+    /// advised action does, such as "corrects it".
+    std::string advice_at_end(std::string_view effect) const;
 
     Plan plan_;
     SolveOptions& options_ = plan_.options;  ///< Requested options, with the chosen method.
@@ -100,6 +107,7 @@ class Solver {
     LocalPassReport gathered_;
     Certificate certificate_;
     RoomDemand rooms_;
+    bool lacked_time_ = false;  ///< True if the time limit prevented another attempt for the sake of bodies.
     int attempt_ = 1;
     int attempts_before_ = 0;  ///< Number of attempts before the first one: those with a larger target error.
     Step step_ = Step::project;

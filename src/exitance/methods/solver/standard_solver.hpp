@@ -82,6 +82,8 @@ class StandardSolver final : public Solver {
 
     // The light of an attempt.
     void project_direct();
+    /// True if a stop now would leave direct light alone, without an estimate of its error: nobody wants that result.
+    bool light_is_dropped_at_stop() const;
     /// Projects direct light on a coarse mesh, for when no time is left for a discontinuity mesh.
     void project_coarsely();
     /// Returns true if there is enough memory for the method on the projected elements. Otherwise sets `refusal_`.
@@ -121,7 +123,7 @@ class StandardSolver final : public Solver {
     double interpolant_scale() const;
     /// Returns direct plus reflected light as plain elements, with an error in proportion to the target error of the
     /// attempts.
-    ElementFunction plain_elements(InterpolantReport& report) const;
+    ElementFunction plain_elements(InterpolantReport& report, Progress* progress = nullptr) const;
 
     double requested_error_ = 0;  ///< Requested error; options_.error is larger while intermediate solutions are shown.
     BodyDemand body_demand_;
