@@ -84,8 +84,8 @@ enum class StopReason : std::uint8_t {
     interrupt,  ///< SIGINT, or a stop request of a caller of the library.
     time_limit,
     memory_limit,
-    iterations,  ///< All attempts, or iterations of a published form, were used.
-    divergence,  ///< Light grew from iteration to iteration.
+    iterations,   ///< All attempts, or iterations of a published form, were used.
+    divergence,   ///< Light grew from iteration to iteration.
     unit_limit,   ///< Growing cells had all the units that were requested.
     termination,  ///< SIGTERM.
 };
