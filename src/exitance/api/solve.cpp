@@ -96,8 +96,6 @@ Result<Solution> solve_request(const SceneData& scene, const SolveRequest& reque
         groups = std::move(*kept);
     }
     SolveStatistics& statistics = solved->statistics;
-    if (statistics.stopped_by == StopReason::interrupt && !run.stop().interrupted())
-        statistics.stopped_by = StopReason::time_limit;
     if (std::optional<std::string> end = message_of_early_end(statistics, request.options)) {
         run.progress().warn(*end);
         statistics.warnings.push_back(std::move(*end));

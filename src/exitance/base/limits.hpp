@@ -6,11 +6,11 @@ namespace exitance {
 /// 1e8 stay finite.
 inline constexpr double min_divisor = 1e-300;
 
-/// Lower limit of the length of a cross product by which that product is divided. Derived from the smallest normal
-/// double, 2e-308: the quotient of a product of length 0 is 0.
+/// Lower limit of the length of a cross product before a division by it. Derived from the smallest normal double,
+/// 2e-308: far below any length that is not 0, so that the quotient of a product of length 0 is 0.
 inline constexpr double min_length_of_product = 1e-200;
 
-// Sines of angles that rounding may cause. Derived from double precision, whose rounding is 1e-16.
+// Sines of angles that rounding may cause. A rounding is the spacing of double precision, 2.2e-16.
 
 /// Sine that one or two operations may cause: 45 roundings.
 inline constexpr double rounded_sine = 1e-14;

@@ -25,6 +25,7 @@ TEST(LoopProgress, OnlyTheDrivingThreadReportsAndFractionsRise) {
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
         progress.add_one();
     });
+    EXPECT_FALSE(reports.fractions.empty());
     for (const std::thread::id id : reports.threads) EXPECT_EQ(id, std::this_thread::get_id());
     for (std::size_t i = 0; i < reports.fractions.size(); ++i) {
         EXPECT_GE(reports.fractions[i], i > 0 ? reports.fractions[i - 1] : 0.5);

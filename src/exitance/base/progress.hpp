@@ -39,12 +39,12 @@ class StopRequest {
     void interrupt(Cause cause = Cause::interrupt) {
         Cause none = Cause::none;
         cause_.compare_exchange_strong(none, cause, std::memory_order_relaxed);
-        interrupted_at_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed);
+        interrupted_at_.store(Clock::now().time_since_epoch().count(), std::memory_order_release);
     }
     void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
 
     Cause cause() const { return cause_.load(std::memory_order_relaxed); }
-    bool interrupted() const { return interrupted_at_.load(std::memory_order_relaxed) != 0; }
+    bool interrupted() const { return interrupted_at_.load(std::memory_order_acquire) != 0; }
     bool out_of_time() const { return Clock::now() >= deadline_; }
     /// Seconds until the deadline; infinite if there is none, negative after it has passed.
     double seconds_left() const {

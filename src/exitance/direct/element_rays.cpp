@@ -31,8 +31,9 @@ double likely_radiance(const DirectLight& direct, const EmitterTree& tree, const
 /// loses 2% of the light in the sample scene `carpet` if elements have edges of 1 m, and 0.2% if they have 0.5 m.
 /// radius  distance of the element's farthest corner from the point, metres
 void RayLight::find_terms(const SurfacePoint& at, double radius, Workspace& room) const {
-    // Clusters whose light is wrong by this share have the wrong rank at most. Chosen; half takes 2.5 times as many
-    // rays and double 2.9 times, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13 cuts=1 books=0).
+    // Clusters whose light is wrong by this share have the wrong rank at most. Chosen: half of it takes 2.5 times as
+    // many rays and twice it 2.9 times, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13 cuts=1
+    // books=0).
     constexpr double error_of_light = 0.1;
     tree_.cut(at, error_of_light, 0, room.cut_);
     const bool is_directed = direct_->scene().has_directed_emission();

@@ -13,8 +13,8 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t min_group_size = 8;  ///< Smaller groups of regions are not tested together.
-/// Share of the total area; larger regions are tested individually. Chosen; half and double take as long, measured by
-/// `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13 cuts=1 books=0).
+/// Share of the total area; larger regions are tested individually. Chosen: half of it and twice it take the same
+/// time, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13 cuts=1 books=0).
 constexpr double large_region_share = 1e-5;
 constexpr std::size_t min_job_count = 256;  ///< Number of groups to distribute to threads.
 

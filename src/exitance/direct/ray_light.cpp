@@ -13,7 +13,8 @@ namespace {
 /// Errors of n rays fall as n^(-error_exponent), variances with twice that power. Derived from points of a Sobol
 /// sequence, for light that is cut by edges.
 constexpr double error_exponent = 0.75;
-/// Power of a part's variance with which its number of rays grows. Derived from fewest rays for a sum of variances.
+/// Exponent of a part's variance in its number of rays. Derived from the least number of all rays for a sum of
+/// variances.
 constexpr double power_of_variance = 1 / (1 + 2 * error_exponent);
 constexpr std::uint32_t fastest_growth = 16;  ///< Limit per round, since a variance from few rays is uncertain.
 
@@ -65,10 +66,10 @@ RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
 /// Returns the variance of a part that decides its number of rays.
 double RayLight::expected_variance(const Part& part, const Spread* known) const {
     if (!known || part.kind == Part::Kind::piece) return variance(part);
-    const double of_one = part.kind == Part::Kind::sky        ? known->sky
-                          : part.kind == Part::Kind::openings ? known->openings
-                                                              : known->others;
-    return of_one * std::pow(part.rays, -2 * error_exponent);
+    const std::optional<double> of_one = part.kind == Part::Kind::sky        ? known->sky
+                                         : part.kind == Part::Kind::openings ? known->openings
+                                                                             : known->others;
+    return of_one ? *of_one * std::pow(part.rays, -2 * error_exponent) : variance(part);
 }
 
 RayLight::Estimate RayLight::on_side(const Start& start, const LightAccuracy& accuracy, const Spread* known,
@@ -142,23 +143,20 @@ double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const L
 RayLight::Spread RayLight::spread_on_side(std::span<const Point> places, const Normal& n, RegionId own,
                                           const LightAccuracy& accuracy, Workspace& room) const {
     constexpr std::size_t every = 4;  // derived from the cost: a quarter of the rays
-    Spread sum;
-    double count = 0;
-    for (std::size_t i = every / 2; i < places.size(); i += every, ++count) {
+    struct Mean {
+        double sum = 0, count = 0;
+
+        std::optional<double> value() const { return count > 0 ? std::optional(sum / count) : std::nullopt; }
+    } sky, openings, others;
+    for (std::size_t i = every / 2; i < places.size(); i += every) {
         on_side({direct_->receiver(places[i], n, own), hash(key_of(places[i], own))}, accuracy, nullptr, room);
-        bool is_shared = false;
         for (const Part& part : room.parts_) {
             if (part.kind == Part::Kind::piece) continue;
-            double& of_kind = part.kind == Part::Kind::sky        ? sum.sky
-                              : part.kind == Part::Kind::openings ? sum.openings
-                                                                  : sum.others;
-            of_kind += variance(part) * std::pow(part.rays, 2 * error_exponent);
-            is_shared = true;
+            Mean& of_kind = part.kind == Part::Kind::sky ? sky : part.kind == Part::Kind::openings ? openings : others;
+            of_kind.sum += variance(part) * std::pow(part.rays, 2 * error_exponent), of_kind.count += 1;
         }
-        if (!is_shared) break;
     }
-    const double share = 1 / std::max(count, 1.0);
-    return {share * sum.sky, share * sum.openings, share * sum.others};
+    return {sky.value(), openings.value(), others.value()};
 }
 
 RayLight::Spreads RayLight::spreads(std::span<const Point> places, const Normal& n, RegionId own,

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "exitance/direct/distant_sources.hpp"
@@ -38,9 +39,9 @@ namespace exitance {
 /// punctual lights is exact.
 class RayLight {
   public:
-    /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light. Chosen; half
-    /// takes 55% more rays and double as many, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13
-    /// cuts=1 books=0).
+    /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light. Chosen: half of
+    /// it takes 55% more rays and twice it the same number, measured by `exitance solve carpet.obj --error 0.1`
+    /// (carpet u=12 v=13 cuts=1 books=0).
     static constexpr double min_share = 0.05;
 
     /// Both arguments must outlive this object.
@@ -58,10 +59,11 @@ class RayLight {
         Spectrum standard_error() const;
     };
 
-    /// Variance of one ray to each kind of part, (W/m^2)^2, so that n rays have this times n^(-3/2). Strong emitters
-    /// and suns are not part of it: their light is cut by sharp shadows, and differs from place to place.
+    /// Variance of one ray to each kind of part, (W/m^2)^2, so that n rays have this times n^(-3/2); empty where no
+    /// place had such a part. Strong emitters and suns decide for themselves: their light is cut by sharp shadows, and
+    /// differs from place to place.
     struct Spread {
-        double sky = 0, openings = 0, others = 0;
+        std::optional<double> sky = {}, openings = {}, others = {};
     };
     /// The spreads on both sides of a surface.
     struct Spreads {

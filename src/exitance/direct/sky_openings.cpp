@@ -40,8 +40,8 @@ constexpr double seen_at_opening = 1.0 / 8;
 /// objects outdoors, such as the horizon.
 constexpr double farthest_rim = 4;
 
-/// Openings are searched only if more than this share of the first places sees no sky. Chosen; half and double give the
-/// same light, measured by `exitance solve house.obj --error 0.1` for a house below a picture of the sky.
+/// Openings are searched only if more than this share of the first places sees no sky. Chosen: half of it and twice
+/// it give the same light, measured by `exitance solve house.obj --error 0.1` for a house below a picture of the sky.
 constexpr double few_dark_places = 1.0 / 64;
 
 struct SearchPlace {
@@ -265,8 +265,9 @@ PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector
 }
 
 PortalCell SkySearch::opening(const Escape& way) {
-    // Distance from which the whole rim is seen, as a share of the opening's size. Chosen; half takes 4% more rays and
-    // double 8% fewer, measured by `exitance solve house.obj --error 0.1` for a house below a picture of the sky.
+    // Distance from which the whole rim is seen, as a share of the opening's size. Chosen: half of it takes 4% more
+    // rays and twice it 8% fewer, measured by `exitance solve house.obj --error 0.1` for a house below a picture of
+    // the sky.
     constexpr double before = 0.25;
     const Point first = before_opening(way);
     const std::vector<Vec3> first_rim = rim(first, Frame(way.direction), [](const Vec3&) { return false; });

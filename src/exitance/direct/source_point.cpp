@@ -8,9 +8,9 @@
 namespace exitance {
 namespace {
 
-/// Ratio of the farthest to the nearest distance; the kernel changes by up to its fourth power. Chosen; half and double
-/// change the rays by less than 1%, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12 v=13 cuts=1
-/// books=0).
+/// Ratio of the farthest to the nearest distance; the kernel changes by up to its fourth power. Chosen: half of it
+/// and twice it change the rays by less than 1%, measured by `exitance solve carpet.obj --error 0.1` (carpet u=12
+/// v=13 cuts=1 books=0).
 constexpr double max_distance_ratio = 1.5;
 
 /// Corners of a polygon whose triangles are sampled one by one. Those of other polygons are slivers from the first

@@ -56,7 +56,7 @@ class BodyMeasure {
 struct BodyAtPoints {
     std::size_t points = 0;
     double mean_square = 0, standard_error = 0;
-    /// Smallest number of points for an error: two in each of the batches that give the standard error.
+    /// Smallest number of points for an error: on average two in each batch of the standard error.
     static constexpr std::size_t min_points = 64;
 };
 
@@ -73,7 +73,7 @@ struct BodyCheck {
     const StopRequest* stop = nullptr;  ///< Ends the measurement if a stop is requested; null: never.
     /// Errors by the points of the certificate, for bodies whose own points do not resolve an error; empty: unknown.
     std::span<const BodyAtPoints> at_points = {};
-    Progress* progress = nullptr;  ///< Told the share of the rays that were cast; null: nobody.
+    Progress* progress = nullptr;  ///< Receives the share of the rays that were cast; null: no reports.
     bool is_stopped() const { return stop && stop->requested(); }
 };
 
@@ -92,8 +92,8 @@ struct MeasuredBodies {
 /// neither be the worst nor exceed that limit, or are below the requested error. Each is measured again with more rays
 /// until the standard error of its mean square is a quarter of it, or that of 1.5 times the requested error. An error
 /// is given where it is at most half. Bodies for which the rays do not suffice, or whose turn does not come before a
-/// stop, get the error at the points of the certificate that are on them, if these are enough, as on the walls of a
-/// room. Else they get no error.
+/// stop, get the error at the points of the certificate that are on them, if there are at least
+/// BodyAtPoints::min_points and noise does not hide the error, as on the walls of a room. Other bodies get no error.
 ///
 /// light_of_room  function that returns the reflected radiosity of a room, W/m^2
 /// error          requested relative error

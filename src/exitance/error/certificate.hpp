@@ -62,7 +62,7 @@ struct CertificateOptions {
     const SceneBodies* bodies = nullptr;
     /// Ends further measurements when it is requested. The first `measure` is always completed. Null: no stop.
     const StopRequest* stop = nullptr;
-    Progress* progress = nullptr;  ///< Told how far each step is; null: nobody.
+    Progress* progress = nullptr;  ///< Receives the progress of each step; null: no reports.
     bool is_stopped() const { return stop && stop->requested(); }
 };
 

@@ -17,7 +17,7 @@ struct InterpolantOptions {
     /// Light of each room, to which its allowed error is proportional, like in LocalPassDemand.
     std::span<const double> light_in = {};
     std::uint64_t seed = 1;        ///< Selects the places at which the error is measured.
-    Progress* progress = nullptr;  ///< Told how far the fits are; null: nobody.
+    Progress* progress = nullptr;  ///< Receives the progress of the fits; null: no reports.
 };
 
 struct InterpolantReport {

@@ -28,8 +28,8 @@ IdRange<ElementId> refine_element(ElementTree& tree, ElementId leaf, Cut only) {
     }
     const Patch& patch = tree.patch(leaf);
     const double a = norm(patch.a), b = norm(patch.b);
-    // Derived from the best shape: halved below 3 : 2, a parallelogram would be narrower than before. A ratio of 3 : 2
-    // counts as not longer, however coordinates are rounded.
+    // Ratio of sides above which only the longer one is halved. Derived from sqrt(2), above which that improves the
+    // shape, and rounded up so that 3 : 2 still counts as not longer, however coordinates are rounded.
     constexpr double long_ratio = 1.5 * (1 + 1e-6);
     tree.split(leaf, only != Cut::none     ? only
                      : patch.is_triangle() ? Cut::both

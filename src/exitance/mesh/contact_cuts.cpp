@@ -14,8 +14,8 @@ namespace {
 /// otherwise into cells. Returns false, and does nothing, if almost nothing would be on one side, as for a line along
 /// the border.
 bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
-    // Share of the element's area that each part must have. Chosen; half and double give the same light, measured by
-    // `exitance solve furniture.obj --error 0.02`.
+    // Share of the element's area that each part must have. Chosen: half of it and twice it give the same light,
+    // measured by `exitance solve furniture.obj --error 0.02`.
     constexpr double min_share = 1e-5;
     constexpr double parallel = 1e-6;  // deviation, as a share of the element; derived from the rounding of files
     if (!tree.is_cell(e) && !tree.patch(e).is_triangle())

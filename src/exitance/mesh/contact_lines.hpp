@@ -51,8 +51,8 @@ class ContactLines {
     /// Height (metres) up to which an edge above a surface counts as a discontinuity for elements of this area (m^2).
     /// The light changes within a strip as wide as the edge is high.
     static double height_of_jump(double area) { return jump_height_share * std::sqrt(area); }
-    /// Share of the element's width. Chosen; half takes 6% more rays and double 30% fewer, both at about the same true
-    /// error, measured by `exitance solve gaps.obj --error 0.02`.
+    /// Share of the element's width. Chosen: half of it takes 6% more rays and twice it 30% fewer, both at about the
+    /// same true error, measured by `exitance solve gaps.obj --error 0.02`.
     static constexpr double jump_height_share = 0.05;
     /// Distance (metres) of two faces up to which they count as a gap for elements of this area (m^2): half of the
     /// element's width. Light that enters a gap falls off within that distance; wider elements would carry it too far

@@ -17,8 +17,8 @@ constexpr double same_place = 1e-9;
 /// Maximum deviation of corners from a parallelogram, as a share of its shortest side. Derived from files with six
 /// digits, whose sides may be a hundredth of the scene's size.
 constexpr double max_parallelogram_gap = 1e-4;
-/// Minimum ratio of height to longest side of a triangle that is split off next to a parallelogram. Chosen; half and
-/// double give the same light, measured by `exitance solve stair.obj --error 0.02`.
+/// Minimum ratio of height to longest side of a triangle that is split off next to a parallelogram. Chosen: half of
+/// it and twice it give the same light, measured by `exitance solve stair.obj --error 0.02`.
 constexpr double sliver = 0.15;
 /// Outlines with more corners are not searched for parallelograms at their border, which takes O(corners^3).
 constexpr std::size_t max_peeled_corners = 40;

@@ -30,8 +30,8 @@ void cut_leaves(ElementTree& tree, ElementId root, const CutLine& line) {
         const Vec2 o = frame.coordinates(patch.origin);
         const Vec2 corner = frame.coordinates(patch.origin + patch.a + patch.b) - o;
         const CutLine own{{line.normal.x * corner.x, line.normal.y * corner.y}, line.offset - dot(line.normal, o)};
-        // Chosen; half and double give the same mesh, measured by `exitance solve complex2.obj --error 0.03` (complex
-        // m=2).
+        // Chosen: half of it and twice it give the same mesh, measured by `exitance solve complex2.obj --error 0.03`
+        // (complex m=2).
         constexpr double min_share = 1e-4;
         tree.split_by_line(e, own, min_share);
     }
@@ -109,8 +109,8 @@ class Cutter {
         for (std::size_t border = 0; border < 3; ++border) {
             if (!touches[border]) continue;
             const double height = 2 * p.area() / edge[border];
-            // Widest strip, as a share of the height. Chosen; half makes 1% fewer elements and double as many, measured
-            // by `exitance solve complex2.obj --error 0.03` (complex m=2).
+            // Widest strip, as a share of the height. Chosen: half of it makes 1% fewer elements and twice it the
+            // same number, measured by `exitance solve complex2.obj --error 0.03` (complex m=2).
             constexpr double widest = 0.4;
             for (double d = strip_[border]; d <= std::min(0.5 * size_.edge, widest * height); d *= 2) {
                 const double t = d / height;  // the coordinate that is 0 on the border and 1 at the opposite corner
@@ -128,7 +128,7 @@ class Cutter {
         double longest = 0;
         for (const Point& a : outline)
             for (const Point& b : outline) longest = std::max(longest, norm(a - b));
-        // Chosen; half makes 45% more elements for 10% more rays and double 10% fewer elements, measured by
+        // Chosen: half of it makes 45% more elements for 10% more rays and twice it 10% fewer elements, measured by
         // `exitance solve complex2.obj --error 0.03` (complex m=2).
         constexpr double longer = 1.3;
         if (!exceeds(longest, longer * size_.edge)) return;

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "exitance/calibration/error_budget.hpp"
-#include "exitance/calibration/numbers.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/scene/findings.hpp"
@@ -43,8 +42,8 @@ std::string reason_and_remedy(const SolveStatistics& statistics, const SolveOpti
             if (next == statistics.figures.end())
                 return "the time limit ended the solve; allow more time, or request a larger --error";
             const double left = statistics.figures.at(seconds_left);
-            constexpr double longest_forecast = 1e6;  // s; derived from patience: in twelve days nobody waits any more
-            if (!(next->second < longest_forecast))
+            constexpr double max_forecast = 1e6;  // s; derived from use: nobody waits for twelve days
+            if (!(next->second < max_forecast))
                 return fmt::format(
                     "another attempt would take far longer than the {:.3g} s that are left of the time limit; request "
                     "a larger --error",
@@ -52,7 +51,7 @@ std::string reason_and_remedy(const SolveStatistics& statistics, const SolveOpti
             return fmt::format(
                 "another attempt would take about {:.3g} s, but {:.3g} s are left of the time limit; allow about "
                 "{:.0f} s more, or request a larger --error",
-                next->second, left, next->second - left);
+                next->second, left, std::ceil(next->second - left));
         }
         case StopReason::memory_limit:
             return "the memory limit ended the solve; allow more memory, or request a larger --error";
@@ -87,11 +86,8 @@ std::optional<std::string> message_of_early_end(const SolveStatistics& statistic
                                     : "";
     const std::string found = fmt::format("the estimated error is {:.3g}%{}", 100 * error, of_room);
     if (error > *requested) return fmt::format("{}, but {:.3g}% was requested: {}", found, 100 * *requested, reason);
-    // An attempt for the sake of single bodies ended early.
-    if (error <= (1 - calibrated::estimate_margin) * *requested)
-        return fmt::format("{}, within the requested {:.3g}%, but the last attempt did not finish: {}", found,
-                           100 * *requested, reason);
-    return fmt::format("{}, too close to the requested {:.3g}% to be sure: {}", found, 100 * *requested, reason);
+    return fmt::format("{}, but it is not certain that all rooms and bodies are within the requested {:.3g}%: {}",
+                       found, 100 * *requested, reason);
 }
 
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,

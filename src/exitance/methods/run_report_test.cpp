@@ -46,9 +46,11 @@ TEST(RunReport, AnEarlyEndHasTheReasonThatEndedTheSolve) {
               "--error");
     EXPECT_EQ(
         end_of(StopReason::iterations, 0.049, 0.049),
-        "the estimated error is 4.9%, too close to the requested 5% to be sure: all attempts were made; request a "
+        "the estimated error is 4.9%, but it is not certain that all rooms and bodies are within the requested 5%: all "
+        "attempts were made; request a "
         "larger --error");
-    EXPECT_NE(end_of(StopReason::memory_limit, 0.02, 0.02).find("within the requested 5%, but the last attempt"),
+    EXPECT_NE(end_of(StopReason::memory_limit, 0.02, 0.02)
+                  .find("not certain that all rooms and bodies are within the requested 5%"),
               std::string::npos);
     EXPECT_NE(end_of(StopReason::memory_limit, 0.2, 0.2).find("the memory limit ended the solve"), std::string::npos);
     EXPECT_NE(end_of(StopReason::interrupt, 0.2, 0.2).find("an interrupt ended the solve"), std::string::npos);

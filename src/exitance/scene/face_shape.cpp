@@ -14,7 +14,8 @@
 namespace exitance {
 namespace {
 
-/// Rounding of corners in a file, m: that of single precision, which glTF has and few text files exceed.
+/// Returns the rounding error of corners in a file, m: that of single precision. glTF stores it, and most text files
+/// have no more digits.
 double rounding_of(std::span<const Point> corners) {
     double largest = 0;
     for (const Point& p : corners) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

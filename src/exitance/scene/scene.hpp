@@ -93,7 +93,7 @@ constexpr std::uint8_t max_stacked = 7;
 constexpr double coplanar_share = 1e-6, coplanar_share_of_face = 1e-3;
 
 /// Cosine of the angle between normals, 2.6 degrees, from which faces that are near to each other count as parallel.
-/// Derived from coplanar_share_of_face: faces that are that flat on each other differ by a tenth of a degree.
+/// Derived from coplanar_share_of_face: the normals of coplanar faces differ by up to 0.1 degrees.
 constexpr double parallel_cosine = 0.999;
 
 /// A diagnostic about an input for the user, printed by `exitance check`.

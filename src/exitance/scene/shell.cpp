@@ -57,9 +57,9 @@ class Inspector {
     void meet();
     void find_open_edges();
     void find_turned_faces();
-    /// The other face at an edge of exactly two faces.
+    /// Returns the face on the other side of an edge; none unless exactly two faces share it.
     std::optional<std::uint32_t> face_across(std::uint32_t e) const;
-    // `first`: the first edge of every face.
+    // `first`: index in edges_ of the first edge of every face, and the number of edges.
     std::vector<std::vector<std::uint32_t>> patches_of(const std::vector<std::uint32_t>& faces,
                                                        const std::vector<std::uint32_t>& first) const;
     bool is_turned(const std::vector<std::uint32_t>& patch, const std::vector<std::uint32_t>& first) const;
@@ -160,8 +160,9 @@ std::vector<std::vector<std::uint32_t>> Inspector::patches_of(const std::vector<
     return out;
 }
 
-/// True if a patch whose faces look the other way than those around it is turned. It is not if it is another object
-/// that merely touches them: a ceiling whose edge is also that of an outer wall, or a board of open shelves.
+/// Returns whether a patch, whose faces are oriented against those around it, is turned. It is not if no neighbour
+/// belongs to one of its objects and less than two thirds of its border edges are shared: then it only touches them,
+/// such as a ceiling at an outer wall, or a board of open shelves.
 bool Inspector::is_turned(const std::vector<std::uint32_t>& patch, const std::vector<std::uint32_t>& first) const {
     const std::set<std::uint32_t> own(patch.begin(), patch.end());
     std::set<GroupId> objects;

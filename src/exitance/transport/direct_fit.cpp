@@ -140,8 +140,7 @@ DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& p
 }
 
 Spectrum light_weight(const Material& material) {
-    // Chosen; half and double give the same light, measured by
-    // `exitance solve furniture.obj --error 0.02`.
+    // Chosen: half of it and twice it give the same light, measured by `exitance solve furniture.obj --error 0.02`.
     constexpr double min_weight = 0.1;
     Spectrum w = material.reflectance;
     for (double& v : w.value) v = std::max(v, min_weight);

@@ -41,7 +41,7 @@ std::vector<double> light_by_room(const Stage& stage, const DirectProjection& li
             light.tree.area(e) * mean(light_weight(stage.scene.material(light.tree.region(e))) * light.fit[e].mean);
         flux[rooms > 0 ? stage.rooms.of(light.tree, e) : 0] += own, all += own;
     }
-    // Chosen; half and double give the same light, measured by `exitance solve door.obj --error 0.02`.
+    // Chosen: half of it and twice it give the same light, measured by `exitance solve door.obj --error 0.02`.
     constexpr double min_share_of_mean = 0.01;
     for (std::size_t room = 0; room < flux.size(); ++room)
         flux[room] = std::max(flux[room] / (rooms > 0 ? stage.rooms.area(room) : stage.area),
@@ -136,8 +136,8 @@ class Projector {
     }
 
     bool are_many(std::size_t elements) const {
-        // Share of all area above which emitters are no small sources. Chosen; half and double give the same light,
-        // measured by `exitance solve furniture.obj --error 0.02`.
+        // Share of all area above which emitters are no small sources. Chosen: half of it and twice it give the same
+        // light, measured by `exitance solve furniture.obj --error 0.02`.
         constexpr double max_emitting_share = 0.25;
         double emitting = 0;
         for (const DirectLight::Emitter& emitter : stage_.direct.emitters())

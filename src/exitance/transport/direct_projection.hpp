@@ -25,7 +25,7 @@ struct DirectProjectionOptions {
     const BodyViews* bodies = nullptr;
     /// Error by one element, for every body, relative to the light that the body reflects.
     std::span<const double> body_tolerance = {};
-    Progress* progress = nullptr;  ///< Told how far the fits are; null: nobody.
+    Progress* progress = nullptr;  ///< Receives the progress of the fits; null: no reports.
 };
 
 /// Exact direct irradiance on one element, and its least-squares polynomial.

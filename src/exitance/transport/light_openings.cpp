@@ -10,13 +10,13 @@
 namespace exitance {
 namespace {
 
-/// Largest area of an opening, as a share of the smaller side's walls. Chosen; half and double give the same rooms,
-/// measured by `exitance solve office.obj --error 0.02`.
+/// Largest area of an opening, as a share of the smaller side's walls. Chosen: half of it and twice it give the same
+/// rooms, measured by `exitance solve office.obj --error 0.02`.
 constexpr double max_opening = 0.1;
 /// Largest area of an opening relative to the openings that the neighbouring cuts would have.
 constexpr double max_ratio_to_neighbours = 0.5;
-/// Distance of the neighbouring cuts, as a share of the smaller side's walls. Chosen; half and double give the same
-/// rooms, measured by `exitance solve office.obj --error 0.02`.
+/// Distance of the neighbouring cuts, as a share of the smaller side's walls. Chosen: half of it and twice it give
+/// the same rooms, measured by `exitance solve office.obj --error 0.02`.
 constexpr double neighbour_distance = 0.2;
 /// Number of iterations; each averages the previous values with those after a reflection. If an opening is a twentieth
 /// of the walls, a third of the difference between its two sides is left after them.

@@ -149,7 +149,7 @@ Normal PortalFinder::normal(std::size_t room, const CrossingRay& ray, const Poin
         if (met[k] == ray.into) sum += directions[k];
         if (met[k] == room) sum -= directions[k];
     }
-    // Shorter sums have no clear direction. Chosen; half and double give the same light, measured by
+    // Shorter sums have no clear direction. Chosen: half of it and twice it give the same light, measured by
     // `exitance solve door.obj --error 0.02`.
     constexpr double min_mean = 0.1;
     const bool tells = norm(sum) > min_mean * static_cast<double>(met.size());
@@ -197,8 +197,8 @@ PortalCell PortalFinder::surrounded(std::size_t room, std::size_t other, const C
     constexpr unsigned lines = 512;
     constexpr int max_searches = 8;
     constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
-    // Neighbourhood on each side, as a share of the rectangle's size. Chosen; half takes 37% more rays and double as
-    // many, measured by `exitance solve door.obj --error 0.02`.
+    // Neighbourhood on each side, as a share of the rectangle's size. Chosen: half of it takes 37% more rays and
+    // twice it the same number, measured by `exitance solve door.obj --error 0.02`.
     constexpr double around = 0.25;
     constexpr double grows =
         1.02;  // factor on the area below which it counts as unchanged: derived from 512 random lines
@@ -284,7 +284,8 @@ std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, c
             const RegionId region = tree.region(e);
             const Normal& n = stage.scene.regions()[region].plane.n;
             const Point x = tree.patch(e).at(tree.centre(e));
-            // Chosen; half and double give the same light, measured by `exitance solve office.obj --error 0.02`.
+            // Chosen: half of it and twice it give the same light, measured by `exitance solve office.obj --error
+            // 0.02`.
             constexpr LightAccuracy rough{.relative = 0.1};
             sum += tree.area(e) * stage.place_light.at(x, n, region, rough, workspace).irradiance;
             area += tree.area(e);

@@ -26,11 +26,12 @@ struct LeavesBetween {
 /// Two leaves most of whose rays end at near things belong to one group if one hits the other.
 LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                              std::span<const std::size_t> room_of, std::size_t rooms) {
-    // A leaf is at a border if a larger share of its rays ends in other rooms. Chosen; half and double give the same
-    // rooms, measured by `exitance solve door.obj --error 0.02`.
+    // A leaf is at a border if a larger share of its rays ends in other rooms. Chosen: half of it and twice it give
+    // the same rooms, measured by `exitance solve door.obj --error 0.02`.
     constexpr double firm = 0.1;
-    // A ray ends at a near thing if it is shorter than this share of the mean length of rays in its room. Chosen; half
-    // takes as many rays and double 2.4 times as many, measured by `exitance solve door.obj --error 0.02`.
+    // A ray ends at a near thing if it is shorter than this share of the mean length of rays in its room. Chosen:
+    // half of it takes the same number of rays and twice it 2.4 times as many, measured by `exitance solve door.obj
+    // --error 0.02`.
     constexpr double near = 0.25;
     const std::size_t n = room_of.size();
     std::vector<double> other(n), length(rooms), area(rooms);
@@ -79,8 +80,9 @@ LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const
 
 std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                                            std::span<const double> light, std::span<const std::size_t> room_of) {
-    // A leaf may be given to another room if at least this share of its rays reaches that room. Chosen; half takes 7%
-    // fewer rays for a 7% larger error, and double 61% more rays, measured by `exitance solve door.obj --error 0.02`.
+    // A leaf may be given to another room if at least this share of its rays reaches that room. Chosen: half of it
+    // takes 7% fewer rays for a 7% larger error, and twice it 61% more rays, measured by `exitance solve door.obj
+    // --error 0.02`.
     constexpr double seen = 0.25;
     // Rooms are treated as different only if one is this many times as bright as the other. Errors of the bright room's
     // light are then large in the dark one.

@@ -22,7 +22,7 @@ namespace {
 /// measured by `exitance solve keyhole.obj --error 0.02`.
 constexpr double min_share = 0.05;
 /// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
-/// Half and double give the same rooms, measured by `exitance solve office.obj --error 0.02`.
+/// Half of it and twice it give the same rooms, measured by `exitance solve office.obj --error 0.02`.
 constexpr double min_detail = 0.001;
 /// An element is outdoors if at least this share of its rays reaches the sky. Derived from facades: under an open sky,
 /// half of their rays reach it, and most of those of a ground.
@@ -30,11 +30,11 @@ constexpr double outdoors = 0.25;
 /// If the scene is at least this many times as large as its rooms, most of its area is ground and sky. Rooms are then
 /// not compared with that area.
 constexpr double far_larger = 20;
-/// Smallest over largest extent of a room. A flatter part is a gap. Half and double give the same rooms, measured by
-/// `exitance solve office.obj --error 0.02`.
+/// Smallest over largest extent of a room. A flatter part is a gap. Half of it and twice it give the same rooms,
+/// measured by `exitance solve office.obj --error 0.02`.
 constexpr double flattest = 0.1;
-/// Volume of a room over area^(3/2). A part with less volume is a gap. Half and double give the same rooms, measured by
-/// `exitance solve office.obj --error 0.02`.
+/// Volume of a room over area^(3/2). A part with less volume is a gap. Half of it and twice it give the same rooms,
+/// measured by `exitance solve office.obj --error 0.02`.
 constexpr double thinnest = 0.03;
 constexpr std::size_t min_walls = 4;   ///< Minimum number of walls of a room.
 constexpr std::size_t max_rooms = 64;  ///< Maximum number of rooms. Further parts stay joined to others.
@@ -44,8 +44,8 @@ constexpr std::size_t max_rooms = 64;  ///< Maximum number of rooms. Further par
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
     // Any direction, derived from one requirement: it is not parallel to the walls of most buildings.
     constexpr Vec3 along{0.73, 0.54, 0.42};
-    // Share of the random part. Chosen; half and double change the rays by 1%, measured by
-    // `exitance solve office.obj --error 0.02`.
+    // Share of the random part. Chosen: half of it and twice it change the rays by 1%, measured by `exitance solve
+    // office.obj --error 0.02`.
     constexpr double chance = 0.1;
     Box box;
     for (ElementId root : tree.roots()) box.add(tree.patch(root).centre());

@@ -46,8 +46,10 @@ struct CheckedRow {
 /// and groups.
 struct RowCheck {
     std::vector<CheckedRow> rows;
-    std::size_t rays = 0;         ///< Rays of all rows together.
-    std::size_t wrong = 0;        ///< Number of rows whose squared error exceeds R^2 by more than max_noise_deviations.
+    std::size_t rays = 0;  ///< Rays of all rows together.
+    /// Number of rows whose squared error exceeds R^2, or of which a sum exceeds R, by more than max_noise_deviations
+    /// standard deviations.
+    std::size_t wrong = 0;
     std::size_t wrong_sums = 0;   ///< Like `wrong`, for the error of a sum over the row or a group.
     double error = 0;             ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
     double sum_error = 0;         ///< Largest difference of a sum over a row or group, including the noise of the rays.

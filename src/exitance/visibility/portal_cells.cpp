@@ -24,8 +24,8 @@ std::vector<Vec3> directions_all_around(unsigned count) {
 
 PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const Vec2> points) {
     constexpr int angles = 48;
-    // Margin on each side, as a share of the rectangle's size. Chosen; half takes 50% more rays and double 37% more,
-    // measured by `exitance solve door.obj --error 0.02`.
+    // Margin on each side, as a share of the rectangle's size. Chosen: half of it takes 50% more rays and twice it
+    // 37% more, measured by `exitance solve door.obj --error 0.02`.
     constexpr double wider = 0.03;
     struct Rectangle {
         Vec2 lo, hi;   ///< Corners, in coordinates rotated by `angle`.

@@ -141,9 +141,9 @@ struct ForecastMesh {
 /// too much memory, the number of leaves is extrapolated.
 ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches) {
     constexpr double step = 4;          // factor between the errors of two projections
-    constexpr double max_seconds = 1;   // of one projection, so that a forecast takes a second or two
-    constexpr double max_leaves = 1e5;  // of one projection: about 100 MB
-    // Factor on the leaves that are parts of pieces, from one projection to the next. Measured by `solve --dry-run`
+    constexpr double max_seconds = 1;   // limit on the time of a projection, s: a forecast then takes a second or two
+    constexpr double max_leaves = 1e5;  // limit on the leaves of a projection: about 100 MB
+    // Factor on the number of leaves of divided pieces, from one projection to the next. Measured by `solve --dry-run`
     // without extrapolation: 2.4 to 3 in an office from 2% to 0.2%, 3.4 to 3.8 in `cornell` from 2% to 0.01%.
     constexpr double min_growth = 2.5, max_growth = step;
     const double error = plan.options.error_target();

@@ -136,7 +136,7 @@ void Solver::warn_of_rooms() {
     const std::optional<double> demand = options_.error_demand();
     const std::vector<RoomError>& rooms = statistics().rooms;
     if (!demand || statistics().converged || rooms.empty() || rooms.size() != stage_.rooms.count()) return;
-    const double limit = margin(certificate_.points) * *demand;
+    const double limit = *demand;
     const auto worst = std::max_element(rooms.begin(), rooms.end(),
                                         [](const RoomError& a, const RoomError& b) { return a.error < b.error; });
     if (worst->error <= limit) return;

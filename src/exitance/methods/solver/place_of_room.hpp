@@ -8,8 +8,8 @@
 namespace exitance {
 
 /// Describes where a room of the stage is, for messages: "of 12.3 m^2 between (0, 0, 0) and (4, 3, 2.5) with 'walls',
-/// 'floor' and 3 more objects". The box is that of the faces whose centres are in the room, the objects with the
-/// largest areas come first. O(faces).
+/// 'floor', 'desk' and 3 more objects". The box is that of the faces whose centres are in the room, the objects with
+/// the largest areas come first. O(faces).
 std::string place_of_room(const Stage& stage, std::size_t room);
 
 }  // namespace exitance

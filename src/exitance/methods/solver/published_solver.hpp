@@ -15,8 +15,8 @@ class PublishedSolver final : public Solver {
     Result<void> fit_memory() override { return {}; }  // published forms stop refining at the limit
     void find_light() override;
     void make_exported_mesh() override;
-    /// Warns of a form without an error estimate whose light misses, or has in excess, a larger share of the emitted
-    /// power than the error that a solve allows by default.
+    /// Warns of a form without an error estimate if the share of the emitted power that is missing or in excess is
+    /// larger than the requested error (if none is requested: 2%).
     void record_energy() override;
     int attempt_limit() const override { return max_attempts; }
     void archive_own(ArchiveReader& a) override { a(aim_); }

@@ -82,7 +82,7 @@ class StandardSolver final : public Solver {
 
     // The light of an attempt.
     void project_direct();
-    /// True if a stop now would leave direct light alone, without an estimate of its error: nobody wants that result.
+    /// True if a stop now would leave only direct light, without an estimate of its error. Such light is not delivered.
     bool light_is_dropped_at_stop() const;
     /// Projects direct light on a coarse mesh, for when no time is left for a discontinuity mesh.
     void project_coarsely();
