@@ -54,15 +54,15 @@ TEST(Certificate, FindsAnErrorOfTheProjectionInADarkRoom) {
     EXPECT_LT(std::sqrt(square), 0.1);
 }
 
-/// Two separate furnaces, the second with 1/64 of the first one's area, and a constant error only in the second.
-TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
+/// Two separate cubes with uniform light inside, with edges of `large` and `small` metres, the second at x = `at`.
+Scene large_and_small_furnace(double large, double small, double at) {
     SceneDescription d;
     d.materials = {{"wall", Spectrum(0.5), Spectrum(1.0)}};
     d.groups = {"large", "small"};
     const std::vector<std::vector<std::uint32_t>> box = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
                                                          {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
     for (std::uint32_t k = 0; k < 2; ++k) {
-        const double x = 20 * k, size = k == 0 ? 16 : 2;
+        const double x = at * k, size = k == 0 ? large : small;
         for (const double z : {0.0, size})
             d.points.insert(d.points.end(), {{x, 0, z}, {x + size, 0, z}, {x + size, size, z}, {x, size, z}});
         for (std::vector<std::uint32_t> face : box) {
@@ -70,7 +70,12 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
             d.faces.push_back({face, 0, k, 1});
         }
     }
-    PlantedError planted([](const Point& p) { return p.x > 18 ? 0.2 : 0.0; }, 1, std::move(*make_scene(d).scene));
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+/// Two separate furnaces, the second with 1/64 of the first one's area, and a constant error only in the second.
+TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
+    PlantedError planted([](const Point& p) { return p.x > 18 ? 0.2 : 0.0; }, 1, large_and_small_furnace(16, 2, 20));
     planted.stage.rooms = {};  // treat the scene as one room
     const SceneBodies bodies = find_bodies(planted.scene);
     ASSERT_EQ(bodies.all.size(), 2u);
@@ -98,21 +103,7 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
 /// Two furnaces with the same rough error. No rays are left for the bodies, so that the points of the whole scene give
 /// their errors.
 TEST(Certificate, BodiesWithoutPointsOfTheirOwnHaveTheErrorAtThePointsOfTheScene) {
-    SceneDescription d;
-    d.materials = {{"wall", Spectrum(0.5), Spectrum(1.0)}};
-    d.groups = {"large", "small"};
-    const std::vector<std::vector<std::uint32_t>> box = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
-                                                         {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
-    for (std::uint32_t k = 0; k < 2; ++k) {
-        const double x = 4 * k, size = k == 0 ? 2 : 0.25;
-        for (const double z : {0.0, size})
-            d.points.insert(d.points.end(), {{x, 0, z}, {x + size, 0, z}, {x + size, size, z}, {x, size, z}});
-        for (std::vector<std::uint32_t> face : box) {
-            for (std::uint32_t& corner : face) corner += 8 * k;
-            d.faces.push_back({face, 0, k, 1});
-        }
-    }
-    PlantedError planted(rough, 0.5, std::move(*make_scene(d).scene));
+    PlantedError planted(rough, 0.5, large_and_small_furnace(2, 0.25, 4));
     planted.stage.rooms = {};  // treat the scene as one room
     const SceneBodies bodies = find_bodies(planted.scene);
     ASSERT_EQ(bodies.all.size(), 2u);

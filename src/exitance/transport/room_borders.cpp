@@ -76,27 +76,14 @@ LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const
     return out;
 }
 
-}  // namespace
-
-std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
-                                           std::span<const double> light, std::span<const std::size_t> room_of) {
-    // A leaf may be given to another room if at least this share of its rays reaches that room. Chosen: half of it
-    // takes 7% fewer rays for a 7% larger error, and twice it 61% more rays, measured by `exitance solve door.obj
-    // --error 0.02`.
-    constexpr double seen = 0.25;
-    // Rooms are treated as different only if one is this many times as bright as the other. Errors of the bright room's
-    // light are then large in the dark one.
-    constexpr double brighter = 4;
+/// Returns the share of the rays of each leaf between rooms that reach each room, if rays that hit other leaves between
+/// rooms go on from there: `rooms` values per leaf.
+std::vector<double> shares_by_room(const RayRows& rows, std::span<const std::size_t> between,
+                                   std::span<const std::size_t> room_of, std::size_t rooms) {
     constexpr int passes = 32;  // derived from leaves that hit one another with nine tenths of their rays
     constexpr std::size_t within = ~std::size_t{0};
-    const std::size_t rooms = light.size();
-    std::vector<std::size_t> out(room_of.begin(), room_of.end());
-    const auto [dimmest, brightest] = std::minmax_element(light.begin(), light.end());
-    if (!(*brightest > brighter * *dimmest)) return out;
-    const auto [between, group] = leaves_between(rows, tree, numbering, room_of, rooms);
-    std::vector<std::size_t> place(out.size(), within);
+    std::vector<std::size_t> place(room_of.size(), within);
     for (std::size_t k = 0; k < between.size(); ++k) place[between[k]] = k;
-    // Share of a leaf's rays that reach each room, if those that hit other leaves between rooms go on from there.
     std::vector<double> share(between.size() * rooms), next(share.size());
     for (int pass = 0; pass < passes; ++pass) {
         std::fill(next.begin(), next.end(), 0.0);
@@ -115,6 +102,26 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
         }
         share.swap(next);
     }
+    return share;
+}
+
+}  // namespace
+
+std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
+                                           std::span<const double> light, std::span<const std::size_t> room_of) {
+    // A leaf may be given to another room if at least this share of its rays reaches that room. Chosen: half of it
+    // takes 7% fewer rays for a 7% larger error, and twice it 61% more rays, measured by `exitance solve door.obj
+    // --error 0.02`.
+    constexpr double seen = 0.25;
+    // Rooms are treated as different only if one is this many times as bright as the other. Errors of the bright room's
+    // light are then large in the dark one.
+    constexpr double brighter = 4;
+    const std::size_t rooms = light.size();
+    std::vector<std::size_t> out(room_of.begin(), room_of.end());
+    const auto [dimmest, brightest] = std::minmax_element(light.begin(), light.end());
+    if (!(*brightest > brighter * *dimmest)) return out;
+    const auto [between, group] = leaves_between(rows, tree, numbering, room_of, rooms);
+    const std::vector<double> share = shares_by_room(rows, between, room_of, rooms);
     // Few rays of a leaf leave the group, so that their sum over the group decides.
     std::unordered_map<std::uint32_t, std::vector<double>> sums;
     for (std::size_t k = 0; k < between.size(); ++k) {
