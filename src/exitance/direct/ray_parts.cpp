@@ -68,7 +68,7 @@ std::uint64_t RayLight::Part::sequence() const {
 
 const SkyOpenings& RayLight::openings() const {
     std::call_once(searched_, [this] {
-        std::vector<SkyOpenings::Sun> suns;
+        std::vector<SunDisc> suns;
         for (const DistantDisc& disc : discs_) suns.push_back({&disc.seen, direct_->occluders().middle()});
         openings_ = std::make_unique<const SkyOpenings>(direct_->occluders(), *tracer_, sky_, suns);
     });

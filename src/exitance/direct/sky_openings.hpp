@@ -4,11 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/direct/direct_light.hpp"
-#include "exitance/direct/sky_tree.hpp"
-#include "exitance/direct/source_point.hpp"
-#include "exitance/visibility/portal_cells.hpp"
-#include "exitance/visibility/rays.hpp"
+#include "exitance/direct/sky_search.hpp"
 
 namespace exitance {
 
@@ -20,19 +16,16 @@ namespace exitance {
 /// directions in which the sky is seen are bounded by the opening's rim. A rectangle around the rim covers the opening.
 /// The rectangle need not cover the opening completely: unaimed rays find the rest.
 ///
+/// Rays are not aimed at openings that are hidden from a whole part of the scene: neither rays from its places to the
+/// sky nor a ray from every place through the opening arrive.
+///
 /// The same places give the light that a few rays miss: if the first n rays found nothing, it is the light that the
 /// next n rays find. It is known for parts of the scene with some hundred places each, since a small room in a large
 /// scene misses more than the mean of all places.
 class SkyOpenings {
   public:
-    /// A sun's disc, as seen from every place.
-    struct Sun {
-        const SeenPolygon* seen;  ///< Polygon of the disc; must outlive the constructor.
-        Point from;               ///< Viewpoint of `seen`.
-    };
-
     /// Casts up to a million rays, on the calling thread alone.
-    SkyOpenings(const Occluders& occluders, const RayTracer& tracer, const SkyTree& sky, std::span<const Sun> suns);
+    SkyOpenings(const Occluders& occluders, const RayTracer& tracer, const SkyTree& sky, std::span<const SunDisc> suns);
 
     /// Parallelograms that cover the openings, with normals that point outdoors.
     std::span<const PortalCell> cells() const { return cells_; }
@@ -56,6 +49,7 @@ class SkyOpenings {
     };
     struct ScenePart {
         Hidden sky, sun;
+        std::vector<bool> is_hidden = {};  ///< For every opening.
     };
     /// A node of the tree that divides the scene: places below `at` along the axis belong to the child `first`, others
     /// to the next one. A leaf has no axis; `first` is then the number of its part.
@@ -64,15 +58,13 @@ class SkyOpenings {
         double at = 0;
         std::uint32_t first = 0;
     };
-    /// A place of the search: bits of the rays that arrive outside of the openings.
-    struct Arrivals {
-        Point x;
-        std::uint64_t sky = 0, sun = 0;
-    };
-    /// Divides the scene below a node. `all`: what rays miss at all places together.
-    void divide(std::uint32_t node, std::span<Arrivals> places, const ScenePart& all);
+    std::vector<PortalCell> find_openings(SkySearch& search, std::span<const SearchPlace> places);
+    std::vector<bool> hidden_openings(SkySearch& search, std::span<SearchPlace> places,
+                                      std::span<const PortalCell> openings, std::size_t every) const;
+    void divide(std::uint32_t node, std::span<SearchPlace> places, std::vector<std::span<SearchPlace>>& places_of_part);
 
     std::vector<PortalCell> cells_;
+    std::vector<std::uint32_t> opening_of_cell_;
     std::vector<Division> divisions_ = {{}};
     std::vector<ScenePart> parts_ = {{}};
 };

@@ -183,6 +183,29 @@ TEST(SkyOpenings, RoomsAreInDifferentPartsOfTheScene) {
     EXPECT_EQ(parts.size(), 9u);
 }
 
+TEST(SkyOpenings, RaysAreNotAimedAtTheWindowsOfFarRooms) {
+    for (const Placing& placing : {Placing(), Placing{.turn = 0.7, .move = {100, -100, 30}}, Placing{.scale = 1e-2}}) {
+        const Rooms rooms{.count = 6,
+                          .boxes = 5,
+                          .left = 1,
+                          .right = 3,
+                          .sill = 1,
+                          .top = 2,
+                          .placing = placing,
+                          .light = overcast()};
+        const Scene scene = rooms.make();
+        const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
+        const Normal to_windows = normalized(rooms.placing({0, -1, 0}) - rooms.placing({0, 0, 0}));
+        for (int room = 0; room < 6; ++room) {
+            std::vector<PortalCell> cells;
+            const double left_out = openings.choose(rooms.placing({4.0 * room + 2, 4.9, 1}), to_windows, cells);
+            EXPECT_LT(left_out, 1e-9) << room;
+            EXPECT_GT(covered_share(rooms, room, cells), 0.95) << room;
+            EXPECT_EQ(covered_share(rooms, (room + 3) % 6, cells), 0) << room;  // next rooms may share a part
+        }
+    }
+}
+
 TEST(RayLight, LightThroughAWindowIsUnbiasedAndItsVarianceIsKnown) {
     const Normal towards = sky_direction(40, 180);
     DistantLight light = overcast();

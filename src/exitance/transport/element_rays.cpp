@@ -8,8 +8,8 @@
 
 namespace exitance {
 
-void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first,
-                       Leave leave, std::span<float> counts) {
+std::size_t ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first,
+                              Leave leave, std::span<float> counts) {
     const std::size_t count = leaves.size();
     const Patch& patch = tree_.patch(e);
     const RegionId region = leave == Leave::as_met ? tree_.region(e) : RegionId();
@@ -35,6 +35,8 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
     }
     locator_.leaves().find(queries_);
     for (std::size_t k = 0; k < queries_.size(); ++k) leaves[of_ray_[k]] = queries_[k].leaf;
+    return static_cast<std::size_t>(
+        std::count_if(hits_.begin(), hits_.end(), [](const RayHit& hit) { return hit.surface.is_none(); }));
 }
 
 /// Aims the second half of the rays at openings if that reduces the noise at `centre`, and sets the rays' weights.

@@ -24,7 +24,7 @@ constexpr int steps = 60;
 
 /// Flux that a leaf of exitance 1 W/m^2 sends to the sky, W.
 double sent_to_sky(const Flow& flow, std::uint32_t leaf) {
-    return flow.area[leaf] * missed_share(flow, leaf);
+    return flow.area[leaf] * share_to_sky(flow, leaf);
 }
 
 double sent_to_sky(const Flow& flow, const LeafNumbers& leaves) {
@@ -48,15 +48,14 @@ double mean_towards_sky(const Flow& flow, const LeafNumbers& leaves, const std::
 std::vector<double> slow_difference(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {
     std::vector<double> x = flow.start, next(flow.area.size());
     for (int step = 0; step < steps; ++step) {
-        const double sky = flow.has_sky ? mean_towards_sky(flow, leaves, x) : 0;
+        const double sky = mean_towards_sky(flow, leaves, x);
         parallel_for(leaves.size(), 256, [&](std::size_t k) {
             const std::uint32_t i = leaves[k];
             double sum = 0;
             std::size_t met = 0;
-            for (std::uint32_t j : flow.rows.hits(i)) {
+            for (std::uint32_t j : flow.rows.hits(i))
                 if (j != RayRows::missed && flow.part[j] == part) sum += x[j], ++met;
-                if (j == RayRows::missed && flow.has_sky) sum += sky, ++met;
-            }
+            sum += flow.to_sky[i] * sky, met += flow.to_sky[i];
             next[i] = met > 0 ? 0.5 * (x[i] + sum / static_cast<double>(met)) : x[i];
         });
         double mean = 0, area = 0, largest = 0;
@@ -78,34 +77,33 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
     std::vector<std::uint32_t> rank(flow.area.size());
     for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<std::uint32_t>(k);
     const std::size_t n = order.size();
-    // Light from a leaf to one of higher (lower) rank crosses all cuts between them. Rays that hit nothing leave
-    // through an opening, too.
-    std::vector<double> up(n + 1), down(n + 1), lost(n);
-    double all_lost = 0;
+    // Light from a leaf to one of higher (lower) rank crosses all cuts between them. Lost rays leave through an
+    // opening, too.
+    std::vector<double> up(n + 1), down(n + 1), lost(n), to_sky(n);
+    double all_lost = 0, all_to_sky = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const auto hits = flow.rows.hits(order[k]);
         const double each = flow.area[order[k]] / static_cast<double>(hits.size());
         for (std::uint32_t j : hits) {
-            if (j == RayRows::missed) lost[k] += each;
             if (j == RayRows::missed || flow.part[j] != part) continue;
             const std::size_t other = rank[j];
             if (other > k) up[k] += each, up[other] -= each;
             if (other < k) down[other] += each, down[k] -= each;
         }
-        // Without a sky, a leaf whose rays all hit nothing is covered by something, not outdoors.
-        if (!flow.has_sky && std::count(hits.begin(), hits.end(), RayRows::missed) == std::ssize(hits)) lost[k] = 0;
-        all_lost += lost[k];
+        lost[k] = flow.lost[order[k]] * each;
+        to_sky[k] = sent_to_sky(flow, order[k]);
+        all_lost += lost[k], all_to_sky += to_sky[k];
     }
     Cuts out{std::vector<double>(n), std::vector<double>(n)};
-    double area = 0, total = 0, u = 0, d = 0, lost_below = 0;
+    double area = 0, total = 0, u = 0, d = 0, lost_below = 0, to_sky_below = 0;
     for (std::uint32_t i : order) total += flow.area[i];
     for (std::size_t k = 0; k < n; ++k) {
-        area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k];
+        area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k], to_sky_below += to_sky[k];
         const bool is_small = 2 * area <= total;
-        double outwards = is_small ? lost_below : all_lost - lost_below;
         // The sky is assigned to the side that sends more light to it. Only the light that the other side sends to the
         // sky crosses the cut.
-        if (flow.has_sky) outwards = std::min(lost_below, all_lost - lost_below);
+        const double outwards =
+            (is_small ? lost_below : all_lost - lost_below) + std::min(to_sky_below, all_to_sky - to_sky_below);
         out.area[k] = area;
         out.opening[k] = (is_small ? u : d) + outwards;
     }
@@ -146,7 +144,7 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
     constexpr int max_sweeps = 8;
     std::vector<std::uint8_t> is_large(flow.area.size());
     for (std::uint32_t i : sides.large) is_large[i] = 1;
-    const int sky = !flow.has_sky ? 0 : sent_to_sky(flow, sides.large) > sent_to_sky(flow, sides.small) ? 1 : -1;
+    const int sky = sent_to_sky(flow, sides.large) > sent_to_sky(flow, sides.small) ? 1 : -1;
     LeafNumbers all = sides.small;
     all.insert(all.end(), sides.large.begin(), sides.large.end());
     std::sort(all.begin(), all.end());
@@ -154,10 +152,9 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
         std::vector<std::uint8_t> next = is_large;
         for (std::uint32_t i : all) {
             int towards_large = 0;
-            for (std::uint32_t j : flow.rows.hits(i)) {
-                if (j == RayRows::missed) towards_large += sky;
+            for (std::uint32_t j : flow.rows.hits(i))
                 if (j != RayRows::missed && flow.part[j] == part) towards_large += is_large[j] ? 1 : -1;
-            }
+            towards_large += sky * static_cast<int>(flow.to_sky[i]);
             if (towards_large != 0) next[i] = towards_large > 0 ? 1 : 0;
         }
         if (std::exchange(is_large, next) == next) break;
@@ -175,10 +172,8 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
 
 }  // namespace
 
-double missed_share(const Flow& flow, std::uint32_t leaf) {
-    const auto hits = flow.rows.hits(leaf);
-    return static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed)) /
-           static_cast<double>(hits.size());
+double share_to_sky(const Flow& flow, std::uint32_t leaf) {
+    return static_cast<double>(flow.to_sky[leaf]) / static_cast<double>(flow.rows.hits(leaf).size());
 }
 
 std::optional<OpeningBetween> find_opening(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {

@@ -15,12 +15,13 @@ struct Flow {
     const RayRows& rows;
     std::vector<double> area;   ///< Area of each leaf, m^2.
     std::vector<double> start;  ///< Starting values of find_opening()'s iteration: a guess that differs between rooms.
-    std::vector<std::uint16_t> part;  ///< The part of the scene that each leaf belongs to so far.
-    bool has_sky = false;  ///< If true, rays that hit nothing reach the sky, which connects leaves like a wall.
+    std::vector<std::uint16_t> part;    ///< The part of the scene that each leaf belongs to so far.
+    std::vector<std::uint32_t> to_sky;  ///< Rays of each leaf that reach the sky, which connects leaves like a wall.
+    std::vector<std::uint32_t> lost;    ///< Rays of each leaf that leave the scene, where nothing else shines.
 };
 
-/// Share of a leaf's rays that hit no front.
-double missed_share(const Flow& flow, std::uint32_t leaf);
+/// Share of a leaf's rays that reach the sky.
+double share_to_sky(const Flow& flow, std::uint32_t leaf);
 
 /// Leaves of a part on the two sides of an opening.
 struct OpeningBetween {

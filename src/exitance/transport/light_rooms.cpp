@@ -108,7 +108,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     if (has_sky)
         while (rays.min < max_room_rays && 2 * rays.min * numbering.leaves.size() <= rays_outdoors) rays.min *= 2;
     const RayRows rows(stage, {tree, numbering, *locator}, {rays, seed}, &stop);
-    const std::vector<LeafNumbers> rooms = find_room_leaves({stage, tree, numbering, rows}, seed, stop);
+    const std::vector<LeafNumbers> rooms = find_room_leaves({stage, tree, numbering, rows, rows.escaped()}, seed, stop);
     LightRooms out;
     if (stop.requested()) return out;  // rows that were not cast have no information
     const std::vector<double> kept = rows.kept();

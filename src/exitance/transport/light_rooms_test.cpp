@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
@@ -68,6 +69,32 @@ TEST(LightRooms, LeavesThatSeeNoFrontBelongToTheRoomBesideThem) {
     const RegionId floor = scene.surfaces()[SurfaceId(6)].region;
     EXPECT_EQ(rooms.at(floor, {10.2, 0.2, 0}), 1u);
     EXPECT_EQ(rooms.at(floor, {11, 1, 0}), 1u);
+}
+
+TEST(LightRooms, SurfacesBehindThingsAreNotOutdoorsIfThereIsASky) {
+    // The rays of a ceiling behind a lamp, or of a wall behind a board, hit backs. They must not count as rays to the
+    // sky, which would make a room of its own of the gap, with nearly no light.
+    SkyModel sky = overcast_sky();
+    ASSERT_TRUE(sky.normalize());
+    for (const double scale : {1.0, 1e-2})
+        for (const double turn : {0.0, 0.7}) {
+            SceneDescription d;
+            d.groups = {"all"};
+            d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
+            add_box(d, {0, 0, 0}, {5, 3, 3}, 0);
+            const auto face = [&](const std::array<Point, 4>& corners) {
+                const auto first = static_cast<std::uint32_t>(d.points.size());
+                d.points.insert(d.points.end(), corners.begin(), corners.end());
+                d.faces.push_back({{first, first + 1, first + 2, first + 3}, 0, 0, 0});
+            };
+            face({Point{2, 1, 2.999}, {2, 1.4, 2.999}, {3.2, 1.4, 2.999}, {3.2, 1, 2.999}});
+            face({Point{1, 2.998, 1}, {2, 2.998, 1}, {2, 2.998, 2}, {1, 2.998, 2}});
+            for (Point& p : d.points)
+                p = scale * Vec3{std::cos(turn) * p.x - std::sin(turn) * p.y,
+                                 std::sin(turn) * p.x + std::cos(turn) * p.y, p.z + 100};
+            d.distant.domes = {{sky, Spectrum(100.0)}};
+            EXPECT_EQ(rooms_of(std::move(*make_scene(std::move(d)).scene)).count(), 0u) << scale << ", " << turn;
+        }
 }
 
 TEST(LightRooms, CoveredFacesAreNoRoom) {

@@ -74,6 +74,7 @@ RayRows::RayRows(const Stage& stage, const NumberedLeaves& leaves, const RowRays
         first_[at + 1] = first_[at] + first[i + 1] - first[i];
     }
     hits_.assign(first_.back(), missed);
+    escaped_.assign(dealt_.own_count(), 0);
     if (stage.rooms.portals()) counts_.assign(first_.back(), 1);
 
     parallel_own_ranges(
@@ -84,7 +85,8 @@ RayRows::RayRows(const Stage& stage, const NumberedLeaves& leaves, const RowRays
             for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
                 const auto row = of_row(std::span(hits_), i);
                 const auto counts = counts_.empty() ? std::span<float>() : of_row(std::span(counts_), i);
-                rays.cast(numbering.leaves[i], points[i].key, row, points[i].first, leave, counts);
+                escaped_[dealt_.place(i)] = static_cast<std::uint32_t>(
+                    rays.cast(numbering.leaves[i], points[i].key, row, points[i].first, leave, counts));
                 note_touched("rays", row.size());
             }
         },
@@ -99,6 +101,8 @@ void RayRows::tell_rows() {
     const auto row_of = [&](auto& values) { return [&](std::size_t i) { return of_row(std::span(values), i); }; };
     exchange_values(size(), dealt_.block(), row_of(hits_), "cast rows");
     if (!counts_.empty()) exchange_values(size(), dealt_.block(), row_of(counts_), "cast rows");
+    exchange_values(
+        size(), dealt_.block(), [&](std::size_t i) -> std::uint32_t& { return escaped_[i]; }, "cast rows");
 }
 
 /// Finds the leaves that own rows read, and replaces leaf numbers in `hits_` by the indices of their values.
@@ -146,6 +150,12 @@ void RayRows::gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum
     const std::vector<Spectrum> values = fetched_.with_fetched(radiosity);
     do_own_share(
         [&] { parallel_for(irradiance.size(), 64, [&](std::size_t at) { irradiance[at] = read(at, values); }); });
+}
+
+std::vector<std::uint32_t> RayRows::escaped() const {
+    std::vector<std::uint32_t> out(size());
+    dealt_.tell<std::uint32_t>(escaped_, out, "cast rows");
+    return out;
 }
 
 std::vector<double> RayRows::kept() const {

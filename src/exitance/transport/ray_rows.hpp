@@ -77,6 +77,9 @@ class RayRows final : public TransportOperator {
 
     /// For every row, the share of its rays that hit a front. Collective if rows are distributed.
     std::vector<double> kept() const;
+    /// For every row, the number of its rays that hit nothing at all, neither fronts nor backs. Collective if rows are
+    /// distributed.
+    std::vector<std::uint32_t> escaped() const;
 
   private:
     template <class T>
@@ -94,7 +97,8 @@ class RayRows final : public TransportOperator {
     std::vector<std::size_t> first_;  ///< The row at index `place` is hits_[first_[place], first_[place + 1]).
     std::vector<std::uint32_t>
         hits_;  ///< Indices of the leaves among own and fetched values; leaf numbers if every process has all rows.
-    std::vector<float> counts_;  ///< Weight of each ray; empty if all are 1.
+    std::vector<std::uint32_t> escaped_;  ///< For every own row, its rays that hit nothing.
+    std::vector<float> counts_;           ///< Weight of each ray; empty if all are 1.
     FetchedValues fetched_;
 };
 

@@ -1,7 +1,6 @@
 #include "exitance/transport/room_finder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -9,7 +8,6 @@
 #include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
-#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/processes/distributed.hpp"
 
 namespace exitance {
@@ -61,22 +59,25 @@ std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering&
 /// Elements that exchange light, and the space that they enclose.
 struct Part {
     LeafNumbers leaves;
-    double area = 0;    ///< m^2
-    double volume = 0;  ///< Sum over elements of area times mean height of the elements it sees, m^3.
+    double area = 0;          ///< m^2
+    double before_backs = 0;  ///< Sum over elements of area times the share of rays that hit backs, m^2.
+    double volume = 0;        ///< Sum over elements of area times mean height of the elements it sees, m^3.
     Box box;
 
     void add(const Part& other) {
         if (other.leaves.empty()) return;
         leaves.insert(leaves.end(), other.leaves.begin(), other.leaves.end());
         area += other.area;
+        before_backs += other.before_backs;
         volume += other.volume;
         box.add(other.box.lo), box.add(other.box.hi);
     }
-    /// False if the part is a gap, several gaps, or a single wall.
+    /// False if the part is a gap, several gaps, a single wall, or faces mainly backs.
     bool may_be_room() const {
         constexpr double power_of_area = 1.5;  // derived from the dimensions of volumes and areas
         const Vec3 size = box.size();
-        return leaves.size() >= min_walls && volume >= thinnest * std::pow(area, power_of_area) &&
+        return leaves.size() >= min_walls && 2 * before_backs <= area &&
+               volume >= thinnest * std::pow(area, power_of_area) &&
                std::min({size.x, size.y, size.z}) >= flattest * std::max({size.x, size.y, size.z});
     }
 };
@@ -85,13 +86,21 @@ struct Part {
 class RoomFinder {
   public:
     RoomFinder(const CoarseElements& in, std::uint64_t seed)
-        : flow_{in.rows, leaf_areas(in.tree, in.numbering), starting_light(in.tree, in.numbering, seed),
-                std::vector<std::uint16_t>(in.numbering.leaves.size()), !in.stage.scene.distant().domes.empty()},
-          stage_(in.stage),
+        : flow_{in.rows, leaf_areas(in.tree, in.numbering), starting_light(in.tree, in.numbering, seed), {}, {}, {}},
           tree_(in.tree),
-          numbering_(in.numbering) {
-        for (std::uint32_t i = 0; i < flow_.area.size(); ++i)
-            if (missed_share(flow_, i) < outdoors) indoor_area_ += flow_.area[i];
+          numbering_(in.numbering),
+          has_sky_(!in.stage.scene.distant().domes.empty()) {
+        const std::size_t n = flow_.area.size();
+        flow_.part.resize(n), flow_.to_sky.resize(n), flow_.lost.resize(n);
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::span<const std::uint32_t> hits = in.rows.hits(i);
+            const auto missed = static_cast<std::uint32_t>(std::count(hits.begin(), hits.end(), RayRows::missed));
+            if (has_sky_)
+                flow_.to_sky[i] = in.escaped[i];
+            else if (missed < hits.size())  // otherwise something covers the leaf
+                flow_.lost[i] = missed;
+            if (share_to_sky(flow_, i) < outdoors) indoor_area_ += flow_.area[i];
+        }
     }
 
     /// Returns the leaves of every room, in descending order of area. Each leaf belongs to one room.
@@ -133,11 +142,18 @@ class RoomFinder {
         for (std::size_t k = 0; k < height.size(); ++k) {
             const std::uint32_t i = part.leaves[k];
             part.area += flow_.area[i];
+            part.before_backs += has_sky_ ? flow_.area[i] * share_on_backs(i) : 0;
             part.volume += flow_.area[i] * height[k];
             for (const Point& p : tree_.outline(numbering_.leaves[i])) part.box.add(p);
         }
         for (std::uint32_t i : part.leaves) within_[i] = 0;
         return part;
+    }
+
+    double share_on_backs(std::uint32_t i) const {
+        const std::span<const std::uint32_t> hits = flow_.rows.hits(i);
+        const auto missed = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
+        return missed / static_cast<double>(hits.size()) - share_to_sky(flow_, i);
     }
 
     /// Mean height, over an element's rays, of the elements within its part that it sees above its plane, metres.
@@ -162,13 +178,13 @@ class RoomFinder {
         const std::size_t n = flow_.area.size();
         DisjointSets sets(n);
         std::uint32_t under_sky = RayRows::missed;
-        for (std::uint32_t i = 0; i < n; ++i)
-            for (std::uint32_t j : flow_.rows.hits(i)) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+            for (std::uint32_t j : flow_.rows.hits(i))
                 if (j != RayRows::missed) sets.unite(i, j);
-                if (j != RayRows::missed || !flow_.has_sky) continue;
-                if (under_sky != RayRows::missed) sets.unite(i, under_sky);
-                under_sky = i;
-            }
+            if (flow_.to_sky[i] == 0) continue;
+            if (under_sky != RayRows::missed) sets.unite(i, under_sky);
+            under_sky = i;
+        }
         std::vector<LeafNumbers> by_root(n);
         for (std::uint32_t i = 0; i < n; ++i) by_root[sets.root(i)].push_back(i);
         Part outer;
@@ -181,7 +197,7 @@ class RoomFinder {
         std::stable_sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.area < b.area; });
         if (out.empty()) {
             // the scene is a ground, with or without objects on it
-            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;
+            if (has_sky_) total_ = outer.area, whole_ = outer.box;
             return {std::move(outer)};
         }
         out.back().add(outer);
@@ -213,8 +229,8 @@ class RoomFinder {
     /// True if the sky is above a part. Such a part is judged separately, independent of its shape and size.
     bool is_outdoors(const Part& part) const {
         double to_sky = 0;
-        for (const std::uint32_t i : part.leaves) to_sky += flow_.area[i] * missed_share(flow_, i);
-        return flow_.has_sky && to_sky >= outdoors * part.area;
+        for (const std::uint32_t i : part.leaves) to_sky += flow_.area[i] * share_to_sky(flow_, i);
+        return has_sky_ && to_sky >= outdoors * part.area;
     }
 
     /// True if a part is large enough to be a room of its own.
@@ -223,7 +239,7 @@ class RoomFinder {
         if (part.area >= min_share * total_) return true;
         if (static_cast<double>(part.leaves.size()) < min_detail * static_cast<double>(flow_.area.size())) return false;
         if (!has_own_walls(part)) return false;
-        if (flow_.has_sky && part.area >= min_share * indoor_area_) return true;
+        if (has_sky_ && part.area >= min_share * indoor_area_) return true;
         Box inner = inner_;
         inner.add(part.box.lo), inner.add(part.box.hi);
         return whole_.diagonal() >= far_larger * inner.diagonal();
@@ -251,9 +267,9 @@ class RoomFinder {
     void join(std::size_t number);
 
     Flow flow_;
-    const Stage& stage_;
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
+    bool has_sky_;
     std::vector<Part> parts_;
     std::vector<std::uint8_t> within_;  ///< For every leaf, 1 while it belongs to the part that is being made.
     Box inner_, whole_;                 ///< Bounds of all rooms but the largest, and of the whole scene.
@@ -262,27 +278,15 @@ class RoomFinder {
     std::uint16_t fresh_ = 1;           ///< Number of the next part.
 };
 
-/// For every leaf, 1 if all its rays hit backs. Rows do not distinguish backs from the sky; if there is a sky, a few
-/// more rays do.
+/// For every leaf, 1 if all its rays hit backs, or nothing if there is no sky.
 std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
-    constexpr std::size_t checking_rays = 8;
-    const ScrambledSobol points(checking_rays);
     std::vector<std::uint8_t> out(numbering_.leaves.size());
-    parallel_for(out.size(), 256, [&](std::size_t i) {
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
         const std::span<const std::uint32_t> seen = flow_.rows.hits(i);
-        if (!std::all_of(seen.begin(), seen.end(), [](std::uint32_t j) { return j == RayRows::missed; })) return;
-        out[i] = 1;
-        if (!flow_.has_sky) return;
-        const ElementId e = numbering_.leaves[i];
-        const RegionId region = tree_.region(e);
-        const Frame frame(stage_.scene.regions()[region].plane.n);
-        std::array<Vec3, checking_rays> directions;
-        std::array<RayHit, checking_rays> hits;
-        for (std::uint32_t k = 0; k < checking_rays; ++k)
-            directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
-        stage_.tracer.nearest(directions, tree_.patch(e).at(tree_.centre(e)), region, hits);
-        out[i] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return hit.surface.is_none(); });
-    });
+        const bool meets_no_front =
+            std::all_of(seen.begin(), seen.end(), [](std::uint32_t j) { return j == RayRows::missed; });
+        out[i] = meets_no_front && flow_.to_sky[i] == 0 ? 1 : 0;
+    }
     return out;
 }
 

@@ -14,6 +14,7 @@ struct CoarseElements {
     const ElementTree& tree;
     const LeafNumbering& numbering;
     const RayRows& rows;
+    std::vector<std::uint32_t> escaped;  ///< Rays of each leaf that hit nothing (`RayRows::escaped`).
 };
 
 /// Divides the leaves of coarse elements into the rooms of a scene (`LightRooms`): cuts the scene at openings
