@@ -78,6 +78,12 @@ constexpr double mean(const Spectrum& s) {
     return sum / static_cast<double>(bands);
 }
 
+/// True if all bands are equal.
+constexpr bool is_grey(const Spectrum& s) {
+    for (const double v : s.value)
+        if (v != s.value[0]) return false;
+    return true;
+}
 constexpr double max(const Spectrum& s) {
     return *std::max_element(s.value.begin(), s.value.end());
 }

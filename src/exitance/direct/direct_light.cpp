@@ -77,9 +77,6 @@ void DirectLight::add_distant_emitters(const Scene& scene) {
 
 /// Adds one emitter per window if all bands are equal, else one per band.
 void DirectLight::add_windows(const Scene& scene) {
-    const auto is_grey = [](const Spectrum& s) {
-        return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
-    };
     const auto& domes = scene.distant().domes;
     const bool is_grey_sky =
         std::all_of(domes.begin(), domes.end(), [&](const auto& d) { return is_grey(d.irradiance); });

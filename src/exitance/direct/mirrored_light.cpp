@@ -43,7 +43,8 @@ bool panes_may_mirror_light(const Scene& scene) {
     return scene.has_light() && std::any_of(scene.panes().begin(), scene.panes().end(), mirrors);
 }
 
-MirroredLight::MirroredLight(const Scene& scene, const RayTracer& tracer) : scene_(scene), tracer_(tracer) {
+MirroredLight::MirroredLight(const Scene& scene, const RayTracer& tracer)
+    : scene_(scene), tracer_(tracer), glass_(scene) {
     if (!panes_may_mirror_light(scene)) return;
     for (const Pane& pane : scene.panes()) pane_area_.push_back(norm(area_vector(pane.corners)));
     double power = 0;
@@ -88,6 +89,9 @@ class MirroredLight::Panes {
 /// Sums over the four quarters of the samples, which are independent.
 struct MirroredLight::Sums {
     std::array<Spectrum, 4> quarter;
+    double open = 0;  ///< Sum over all samples of Sample::open.
+
+    void add(std::size_t number, const Sample& sample) { quarter[number] += sample.light, open += sample.open; }
 
     /// Makes room for as many further samples: the existing ones become the first two quarters.
     void halve() { quarter = {quarter[0] + quarter[1], quarter[2] + quarter[3], Spectrum(), Spectrum()}; }
@@ -96,7 +100,9 @@ struct MirroredLight::Sums {
         const double middle = mean(total()) / 4;
         double squares = 0;
         for (const Spectrum& q : quarter) squares += std::pow(mean(q) - middle, 2);
-        return 4.0 / 3 * squares / (samples * samples);
+        // Light of features that no sample may have met: half of the light of one sample, as for rays (RayLight).
+        const double missed = 0.5 * open / samples;
+        return (4.0 / 3 * squares + missed * missed) / (samples * samples);
     }
 };
 
@@ -115,10 +121,11 @@ MirroredLight::Estimate MirroredLight::at(const SurfacePoint& place, double E, c
         if (first > 0) sky.halve(), emitters.halve();
         for (std::uint32_t i = first; i < last; ++i) {
             const std::size_t q = 4ull * i / last;
-            if (has_sky) sky.quarter[q] += by_sky(place, panes, for_sky(i, 0), for_sky(i, 1), for_sky(i, 2));
+            if (has_sky) sky.add(q, by_sky(place, panes, for_sky(i, 0), for_sky(i, 1), for_sky(i, 2)));
             if (!emitters_.empty())
-                emitters.quarter[q] += by_emitters(
-                    place, panes, {for_emitters(i, 0), for_emitters(i, 1), for_emitters(i, 2), for_emitters(i, 3)});
+                emitters.add(
+                    q, by_emitters(place, panes,
+                                   {for_emitters(i, 0), for_emitters(i, 1), for_emitters(i, 2), for_emitters(i, 3)}));
         }
         const double samples = last;
         Estimate out = images;
@@ -133,7 +140,8 @@ MirroredLight::Estimate MirroredLight::at(const SurfacePoint& place, double E, c
 }
 
 /// One sample of E_m from skies: a point of a pane.
-Spectrum MirroredLight::by_sky(const SurfacePoint& place, Panes& panes, double s, double t, double choice) const {
+MirroredLight::Sample MirroredLight::by_sky(const SurfacePoint& place, Panes& panes, double s, double t,
+                                            double choice) const {
     const auto [number, chance] = panes.choose(choice);
     if (!(chance > 0)) return {};
     const Pane& pane = scene_.panes()[number];
@@ -146,14 +154,15 @@ Spectrum MirroredLight::by_sky(const SurfacePoint& place, Panes& panes, double s
     const Vec3 onwards = mirrored(d, pane.n) / length;
     const Spectrum light = scene_.distant().radiosity(onwards, false);
     if (!(max(light) > 0)) return {};
-    if (!is_open(place, mirror, onwards, {mirror + 2 * scene_.size() * onwards, RegionId()})) return {};
-    return (weight * seen.measure() / (pi * chance)) * pane.reflection(std::abs(dot(pane.n, d)) / length) * light;
+    const Spectrum open =
+        (weight * seen.measure() / (pi * chance)) * pane.reflection(std::abs(dot(pane.n, d)) / length) * light;
+    return {passing(place, mirror, onwards, {mirror + 2 * scene_.size() * onwards, RegionId()}) * open, mean(open)};
 }
 
-/// True if neither the way from a place to a point of a pane nor the further way along `onwards` (of length 1) to the
-/// end is blocked.
-bool MirroredLight::is_open(const SurfacePoint& from, const Point& mirror, const Vec3& onwards,
-                            const RayEnd& end) const {
+/// Share of light that passes the way from a place to a point of a pane, and the further way along `onwards` (of length
+/// 1) to the end, in the mean: 0 if something blocks one of them.
+Spectrum MirroredLight::passing(const SurfacePoint& from, const Point& mirror, const Vec3& onwards,
+                                const RayEnd& end) const {
     // Rays start and end away from the pane, by more than rounding to single precision, so that it does not block them.
     const double off = 0x1p-18 * scene_.size();
     const Vec3 there = mirror - from.x;
@@ -162,12 +171,13 @@ bool MirroredLight::is_open(const SurfacePoint& from, const Point& mirror, const
         ends{{{before, RegionId()}, end}};
     std::array<bool, 2> blocked{};
     tracer_.occluded(begins, ends, blocked);
-    return !blocked[0] && !blocked[1];
+    if (blocked[0] || blocked[1]) return {};
+    return glass_.between(from.x, before) * glass_.between(begins[1].x, end.x);
 }
 
 /// Irradiance per area of an emitter around one of its points, by the mirror image of that point in one pane, W/m^4.
-Spectrum MirroredLight::by_emitter(const SurfacePoint& place, const Piece& piece, const Point& on,
-                                   const Pane& pane) const {
+MirroredLight::Sample MirroredLight::by_emitter(const SurfacePoint& place, const Piece& piece, const Point& on,
+                                                const Pane& pane) const {
     const double height = dot(pane.n, place.x - pane.corners[0]), other = dot(pane.n, on - pane.corners[0]);
     if ((height > 0) != (other > 0)) return {};
     const Vec3 towards = on - 2 * other * pane.n - place.x;  // vector to the mirror image
@@ -177,20 +187,25 @@ Spectrum MirroredLight::by_emitter(const SurfacePoint& place, const Piece& piece
     const Vec3 onwards = mirrored(towards, pane.n) / length;
     const double leaving = -dot(scene_.regions()[piece.region].plane.n, onwards);
     const Point mirror = place.x + t * towards;
-    if (!(leaving > 0) || !is_inside(pane, mirror) || !is_open(place, mirror, onwards, {on, piece.region})) return {};
-    return (scene_.relative_radiance(piece.region)(-onwards) * cosine * leaving / (pi * length * length)) *
-           pane.reflection(std::abs(rise) / length) * scene_.material(piece.region).exitance;
+    if (!(leaving > 0)) return {};
+    const Spectrum open =
+        (scene_.relative_radiance(piece.region)(-onwards) * cosine * leaving / (pi * length * length)) *
+        pane.reflection(std::abs(rise) / length) * scene_.material(piece.region).exitance;
+    if (!is_inside(pane, mirror)) return {{}, mean(open)};
+    return {passing(place, mirror, onwards, {on, piece.region}) * open, mean(open)};
 }
 
 /// One sample of E_m from emitters: a point chosen in proportion to power, and a pane.
-Spectrum MirroredLight::by_emitters(const SurfacePoint& place, const Panes& panes,
-                                    const std::array<double, 4>& random) const {
+MirroredLight::Sample MirroredLight::by_emitters(const SurfacePoint& place, const Panes& panes,
+                                                 const std::array<double, 4>& random) const {
     const auto [e, chance] = chosen(power_up_to_, random[2]);
     const auto [p, pane_chance] = panes.choose(random[3]);
     if (!(pane_chance > 0)) return {};
     const Patch& patch = emitters_[e].patch;
     const Point on = patch.at(uniform_in_shape(patch.shape, random[0], random[1]));
-    return (patch.area() / (chance * pane_chance)) * by_emitter(place, emitters_[e], on, scene_.panes()[p]);
+    const Sample found = by_emitter(place, emitters_[e], on, scene_.panes()[p]);
+    const double weight = patch.area() / (chance * pane_chance);
+    return {weight * found.light, weight * found.open};
 }
 
 /// E_m from a disc of the sky (the first indices) or a light without extent (further indices), by one pane.
@@ -215,8 +230,8 @@ Spectrum MirroredLight::by_image(const SurfacePoint& place, std::size_t light, c
     if (!is_inside(pane, mirror)) return {};
     const Vec3 onwards = mirrored(towards, pane.n) / length;
     const Point end = is_parallel ? mirror + 2 * scene_.size() * onwards : lamp->position;
-    if (!is_open(place, mirror, onwards, {end, RegionId()})) return {};
-    const Spectrum mirrored_share = pane.reflection(std::abs(rise) / length);
+    const Spectrum through = passing(place, mirror, onwards, {end, RegionId()});
+    const Spectrum mirrored_share = through * pane.reflection(std::abs(rise) / length);
     if (is_disc) return cosine * mirrored_share * discs[light].irradiance;
     if (is_parallel) return cosine * mirrored_share * lamp->intensity;
     return (cosine * lamp->share_towards(-onwards) / (length * length)) * mirrored_share * lamp->intensity;

@@ -8,6 +8,7 @@
 #include "exitance/direct/beams.hpp"
 #include "exitance/direct/light_accuracy.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
+#include "exitance/visibility/glass/glass_colours.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
@@ -45,14 +46,21 @@ class MirroredLight {
   private:
     class Panes;
     struct Sums;
-    Spectrum by_sky(const SurfacePoint& place, Panes& panes, double s, double t, double choice) const;
-    Spectrum by_emitters(const SurfacePoint& place, const Panes& panes, const std::array<double, 4>& random) const;
-    Spectrum by_emitter(const SurfacePoint& place, const Piece& piece, const Point& on, const Pane& pane) const;
+    /// A sample of E_m, W/m^2.
+    struct Sample {
+        Spectrum light;
+        double open =
+            0;  ///< Its light if nothing were in the way and the pane were as large as needed, mean over bands.
+    };
+    Sample by_sky(const SurfacePoint& place, Panes& panes, double s, double t, double choice) const;
+    Sample by_emitters(const SurfacePoint& place, const Panes& panes, const std::array<double, 4>& random) const;
+    Sample by_emitter(const SurfacePoint& place, const Piece& piece, const Point& on, const Pane& pane) const;
     Spectrum by_image(const SurfacePoint& place, std::size_t light, const Pane& pane) const;
-    bool is_open(const SurfacePoint& from, const Point& mirror, const Vec3& onwards, const RayEnd& end) const;
+    Spectrum passing(const SurfacePoint& from, const Point& mirror, const Vec3& onwards, const RayEnd& end) const;
 
     const Scene& scene_;
     const RayTracer& tracer_;
+    GlassColours glass_;
     std::vector<Piece> emitters_;
     std::vector<double> power_up_to_;  ///< Running sum of the emitters' power, W.
     std::vector<double> pane_area_;    ///< m^2

@@ -184,7 +184,7 @@ void RayLight::continue_through_windows(Workspace& room) const {
     for (std::size_t k = 0; k < room.onwards_.size(); ++k) {
         Workspace::Ray& ray = room.rays_[room.onwards_[k]];
         room.blocked_[room.onwards_[k]] = hidden[k];
-        if (is_coloured_ && !hidden[k])
+        if (!glass_.empty() && !hidden[k])
             ray.weight *=
                 colour_between(direct_->occluders().enclosure().others, room.onwards_from_[k].x, room.onwards_to_[k].x);
     }
@@ -202,8 +202,7 @@ void RayLight::trace(Workspace& room) const {
     for (std::size_t i = 0; i < room.rays_.size(); ++i) {
         if (room.blocked_[i]) continue;
         Workspace::Ray& ray = room.rays_[i];
-        if (is_coloured_)  // rays pass by the mean of the bands
-            ray.weight *= colour_between(direct_->occluders().scene().panes(), room.from_[i].x, room.to_[i].x);
+        if (!glass_.empty()) ray.weight *= glass_.between(room.from_[i].x, room.to_[i].x);
         Part& part = room.parts_[ray.part];
         part.blocks[ray.block].arrived += ray.weight;
         if (ray.is_distant) part.distant += ray.weight;

@@ -18,10 +18,6 @@ constexpr double error_exponent = 0.75;
 constexpr double power_of_variance = 1 / (1 + 2 * error_exponent);
 constexpr std::uint32_t fastest_growth = 16;  ///< Limit per round, since a variance from few rays is uncertain.
 
-bool is_grey(const Spectrum& s) {
-    return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
-}
-
 }  // namespace
 
 std::uint32_t RayLight::power_of_two(double rays, std::uint32_t least, std::uint32_t most) {
@@ -59,9 +55,8 @@ RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
       tree_(direct),
       sky_(kept_domes(direct)),
       discs_(distant_discs(direct)),
-      size_(direct.occluders().scene().size()) {
-    for (const Pane& pane : direct.occluders().scene().panes()) is_coloured_ |= !is_grey(pane.transmissivity);
-}
+      size_(direct.occluders().scene().size()),
+      glass_(direct.occluders().scene()) {}
 
 /// Returns the variance of a part that decides its number of rays.
 double RayLight::expected_variance(const Part& part, const Spread* known) const {

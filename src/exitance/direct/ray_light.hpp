@@ -13,6 +13,7 @@
 #include "exitance/direct/sky_openings.hpp"
 #include "exitance/direct/sky_tree.hpp"
 #include "exitance/mesh/element_tree.hpp"
+#include "exitance/visibility/glass/glass_colours.hpp"
 #include "exitance/visibility/portal_aim.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -153,8 +154,8 @@ class RayLight {
     std::vector<DistantDisc> discs_;   ///< Suns; they appear in the same direction from every point.
     mutable std::once_flag searched_;  ///< Guards `openings_`, which is made at the first call of openings().
     mutable std::unique_ptr<const SkyOpenings> openings_;
-    double size_ = 0;           ///< m
-    bool is_coloured_ = false;  ///< True if a pane's transmission differs between bands.
+    double size_ = 0;  ///< m
+    GlassColours glass_;
 };
 
 /// A source of light, or group of sources, that is sampled by rays of its own.

@@ -44,7 +44,8 @@ Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gath
         const double q = probability(plan, gather.fronts[k]);
         if (random.uniform() >= q) continue;
         room.hits.push_back(gather.fronts[k]);
-        room.counts.push_back((gather.counts.empty() ? 1 : gather.counts[k]) / q);
+        const Spectrum colour = gather.colours.empty() ? Spectrum(1.0) : gather.colours[k];
+        room.counts.push_back((gather.counts.empty() ? 1 : gather.counts[k]) / q * colour);
     }
     room.projected.resize(room.hits.size());
     projected_.irradiance->read(room.hits, room.projected);
@@ -105,7 +106,8 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
     for (std::size_t k = 0; k < gather.fronts.size(); ++k) {
         const double count = gather.counts.empty() ? 1 : gather.counts[k];
         const RayEnd& hit = gather.fronts[k];
-        const Spectrum rho = count * stage.scene.material(hit.region).reflectance;
+        const Spectrum colour = gather.colours.empty() ? Spectrum(1.0) : gather.colours[k];
+        const Spectrum rho = count * (colour * stage.scene.material(hit.region).reflectance);
         square += mean(count * gather.values[k] * (count * gather.values[k]));
         if (!check.has_projection()) continue;
         PilotHit& told = out.hits[k];

@@ -49,7 +49,7 @@ class DirectCheck {
     struct Workspace {
         PlaceLight::Workspace clustered;  ///< For direct light at hits, exact or by rays.
         std::vector<RayEnd> hits;
-        std::vector<double> counts;  ///< Rays per hit, divided by the probability of its check.
+        std::vector<Spectrum> counts;  ///< Rays per hit, times their colours, divided by the probability of its check.
         std::vector<Spectrum> projected;
     };
 

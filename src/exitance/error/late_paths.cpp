@@ -29,29 +29,33 @@ Spectrum LatePaths::sample(const SurfacePoint& x, double a, double b, RandomStre
     const PathTracer& paths = check_.paths();
     const auto per_step = static_cast<std::size_t>(paths.rays_per_step());
     Spectrum sum, throughput(1.0);
-    std::optional<SurfacePoint> y = paths.first(x, a, b);
+    const std::optional<PathTracer::Vertex> first = paths.first(x, a, b);
     ++rays;
-    if (!y) return sum;
-    PathTracer::Step at_y = paths.step(*y, random);
+    if (!first) return sum;
+    SurfacePoint y = first->at;
+    throughput *= first->colour;
+    PathTracer::Step at_y = paths.step(y, random);
     rays += per_step;
     while (true) {
-        const Spectrum& rho = stage_.scene.material(y->region).reflectance;
+        const Spectrum& rho = stage_.scene.material(y.region).reflectance;
         const double survival = max(rho);
         if (survival <= 0 || random.uniform() >= survival) return sum;
         throughput *= rho / survival;
-        Spectrum found = Spectrum() - indirect_.at(locator_.find(y->region, y->x));
+        Spectrum found = Spectrum() - indirect_.at(locator_.find(y.region, y.x));
         if (holds_direct_) found += at_y.direct;
-        const std::optional<SurfacePoint> z = at_y.next;
-        if (!z) return sum + throughput * found;
-        at_y = paths.step(*z, random);
+        const std::optional<PathTracer::Vertex> next = at_y.next;
+        if (!next) return sum + throughput * found;
+        const SurfacePoint& z = next->at;
+        at_y = paths.step(z, random);
         rays += per_step;
-        found += read(b_, *z);
+        found += next->colour * read(b_, z);
         if (check_.has_projection()) {
             const ProjectedDirect& projected = check_.projected();
-            found += stage_.scene.material(z->region).reflectance * projected.weight *
-                     (at_y.direct - read(*projected.irradiance, *z));
+            found += next->colour * stage_.scene.material(z.region).reflectance * projected.weight *
+                     (at_y.direct - read(*projected.irradiance, z));
         }
         sum += throughput * found;
+        throughput *= next->colour;
         y = z;
     }
 }

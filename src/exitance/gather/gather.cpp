@@ -14,6 +14,7 @@ namespace {
 std::span<const QuarterSums> quarter_sums(const ReflectedLight& b, std::size_t places, GatherWorkspace& w) {
     w.values.resize(w.fronts.size());
     b.read(w.fronts, w.values);
+    for (std::size_t k = 0; k < w.colours.size(); ++k) w.values[k] *= w.colours[k];
     w.sums.assign(places, {});
     for (std::size_t k = 0; k < w.fronts.size(); ++k)
         w.sums[w.share[k] / 4][w.share[k] % 4] += w.counts.empty() ? w.values[k] : w.counts[k] * w.values[k];
@@ -107,13 +108,14 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
     std::vector<double> counts(cells.empty() ? 0 : all);
     if (!cells.empty()) aim_others(places, cells, n, even, from, counts, w);
     stage.tracer.nearest(w.origins, w.directions, own, w.hits, Mirrored::followed);
-    w.fronts.clear(), w.share.clear(), w.counts.clear();
+    w.fronts.clear(), w.share.clear(), w.counts.clear(), w.colours.clear();
     for (std::size_t k = 0; k < all; ++k) {
         const RayHit& hit = w.hits[k];
         if (hit.surface.is_none() || !hit.front || (!cells.empty() && counts[k] == 0)) continue;
         w.fronts.push_back({place_of(stage.scene, hit, w.origins[k], w.directions[k]), hit.region});
         w.share.push_back(w.quarter[k]);
         if (!cells.empty()) w.counts.push_back(counts[k]);
+        if (!stage.glass.empty()) w.colours.push_back(stage.glass.of(hit, w.origins[k], w.directions[k]));
     }
 }
 

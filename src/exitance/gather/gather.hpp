@@ -65,7 +65,8 @@ struct GatherWorkspace {
     std::vector<RayEnd> fronts;         ///< Hits at which b is evaluated.
     std::vector<std::uint32_t> share;   ///< Entry of `quarter` for each hit.
     std::vector<double> counts;         ///< Weight of each hit if rays are aimed at openings (`PortalAim`); else empty.
-    std::vector<Spectrum> values;       ///< b at each hit.
+    std::vector<Spectrum> colours;      ///< Factors of panes on each hit's bands (`GlassColours`); empty: all are 1.
+    std::vector<Spectrum> values;       ///< b at each hit, times its `colours`.
     std::vector<QuarterSums> sums;      ///< Resulting sums for each place.
     std::vector<std::uint32_t> filled;  ///< Number of rays in each cell so far.
 };

@@ -8,20 +8,22 @@ namespace exitance {
 
 PathTracer::PathTracer(const Stage& stage) : stage_(stage), lights_(stage.direct) {}
 
-std::optional<SurfacePoint> PathTracer::first(const SurfacePoint& from, double a, double b) const {
+std::optional<PathTracer::Vertex> PathTracer::first(const SurfacePoint& from, double a, double b) const {
     const Vec3 direction = met_direction(stage_.scene, from.region, from.n, a, b);
-    return vertex_of(trace(from, direction, Mirrored::followed), from, direction);
+    const RayHit hit = trace(from, direction, Mirrored::followed);
+    const std::optional<SurfacePoint> end = vertex_of(hit, from, direction);
+    return end ? std::optional(Vertex{*end, stage_.glass.of(hit, from.x, direction)}) : std::nullopt;
 }
 
 Spectrum PathTracer::path(const SurfacePoint& probe, double a, double b, RandomStream& random) const {
     Spectrum sum, throughput(1.0);
-    std::optional<SurfacePoint> y = first(probe, a, b);
+    std::optional<Vertex> y = first(probe, a, b);
     while (y) {
-        const Spectrum& rho = stage_.scene.material(y->region).reflectance;
+        const Spectrum& rho = stage_.scene.material(y->at.region).reflectance;
         const double survival = max(rho);
         if (survival <= 0 || random.uniform() >= survival) return sum;
-        throughput *= rho / survival;
-        const Step found = step(*y, random);
+        throughput *= rho / survival * y->colour;
+        const Step found = step(y->at, random);
         sum += throughput * found.direct;
         y = found.next;
     }
@@ -43,8 +45,9 @@ PathTracer::Step PathTracer::step(const SurfacePoint& vertex, RandomStream& rand
     if (stage_.place_light.is_mirrored())
         out.direct += stage_.place_light.mirrored_images({y.x, y.n, y.region}, 1, random.bits());
     const RayHit hit = trace(y, on, Mirrored::followed);
-    out.next = vertex_of(hit, y, on);
-    out.direct += met_light(hit, y, on);
+    const Spectrum colour = stage_.glass.of(hit, y.x, on);
+    if (const std::optional<SurfacePoint> end = vertex_of(hit, y, on)) out.next = Vertex{*end, colour};
+    out.direct += colour * met_light(hit, y, on);
     return out;
 }
 
@@ -87,9 +90,10 @@ Spectrum PathTracer::light_of_discs(const SurfacePoint& y, RandomStream& random)
         const double z = 1 - u * (1 - least), r = std::sqrt(std::max(0.0, 1 - z * z));
         const Vec3 w = Frame(disc.towards).to_world(r * std::cos(2 * pi * v), r * std::sin(2 * pi * v), z);
         const double cosine = dot(y.n, w);
-        const bool lost = cosine > 0 && trace(y, w, Mirrored::lost).surface.is_none();
+        if (cosine <= 0) continue;
+        const RayHit hit = trace(y, w, Mirrored::lost);
         // Uniform radiance L: irradiance across it is pi L sin^2, its solid angle 2 pi (1 - cos).
-        if (lost) sum += (2 * cosine / (1 + least)) * disc.irradiance;
+        if (hit.surface.is_none()) sum += (2 * cosine / (1 + least)) * (stage_.glass.of(hit, y.x, w) * disc.irradiance);
     }
     return sum;
 }
@@ -138,7 +142,8 @@ Spectrum PathTracer::shadow_ray(const SurfacePoint& y, RandomStream& random) con
     stage_.tracer.occluded(std::span(&y.x, 1), std::span(&target, 1), y.region, source.region, std::span(&blocked, 1));
     if (blocked) return {};
     const double density = density_of(chance, source.area, r2, at_light);
-    return light.exitance * (light.radiance.towards(y.x, target) * at_y / pi / density * balance(density, at_y / pi));
+    const double share = light.radiance.towards(y.x, target) * at_y / pi / density * balance(density, at_y / pi);
+    return share * (stage_.glass.between(y.x, target) * light.exitance);
 }
 
 }  // namespace exitance

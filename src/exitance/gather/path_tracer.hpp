@@ -19,11 +19,15 @@ namespace exitance {
 /// stage must outlive the tracer.
 class PathTracer {
   public:
+    /// A point of a path where light is reflected.
+    struct Vertex {
+        SurfacePoint at;
+        Spectrum colour;  ///< Factors of panes on the light that comes from here (`GlassColours`).
+    };
     /// Result of one step of a path at a vertex.
     struct Step {
-        Spectrum direct;  ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
-        std::optional<SurfacePoint>
-            next;  ///< Hit of the next ray, chosen with density cos / pi; none if no front is hit.
+        Spectrum direct;             ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
+        std::optional<Vertex> next;  ///< Hit of the next ray, chosen with density cos / pi; none if no front is hit.
     };
 
     explicit PathTracer(const Stage& stage);
@@ -34,7 +38,7 @@ class PathTracer {
 
     /// Casts a ray from `from` and returns the vertex where it hits a front; none if it hits nothing or a back. Panes
     /// may mirror the ray. a, b in [0, 1) choose its direction, with density cos / pi around the normal.
-    std::optional<SurfacePoint> first(const SurfacePoint& from, double a, double b) const;
+    std::optional<Vertex> first(const SurfacePoint& from, double a, double b) const;
 
     /// Takes a step from `y`. On a diffusing pane, it starts from one of the two sides, chosen in proportion to the
     /// share of the light leaving `y` that arrived on that side.

@@ -46,10 +46,12 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
 
 }  // namespace
 
-std::vector<double> kept_light(const RayRows& rows, const Scene& scene) {
+std::vector<double> kept_light(const RayRows& rows, const Stage& stage) {
     std::vector<double> kept = rows.kept();
     const auto is_open = [](double share) { return share < 1; };
-    if (scene.has_diffusing_panes() && std::any_of(kept.begin(), kept.end(), is_open)) kept.clear();
+    // Coloured glass keeps another share in every band.
+    const bool differs = stage.scene.has_diffusing_panes() || !stage.glass.empty();
+    if (differs && std::any_of(kept.begin(), kept.end(), is_open)) kept.clear();
     return kept;
 }
 

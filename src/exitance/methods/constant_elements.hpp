@@ -18,6 +18,6 @@ void relax_constant_elements(const MethodInput& input, const TransportOperator& 
 
 /// Returns `GlobalLight::kept` for rows of rays, or nothing if it cannot be determined: rays of a diffusing pane leave
 /// from both sides whereas its own light leaves from one, so they are meaningful only if all light arrives.
-std::vector<double> kept_light(const RayRows& rows, const Scene& scene);
+std::vector<double> kept_light(const RayRows& rows, const Stage& stage);
 
 }  // namespace exitance

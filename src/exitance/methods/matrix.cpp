@@ -91,7 +91,7 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const RayRows F(stage, {light.tree, light.numbering, locator},
                         {rays_of_rows(input, light), options.seed, Dealing::by_element, RowsHeld::by_owner},
                         input.may_give_up ? &input.stop : nullptr);
-        if (options.bounces < 0) light.kept = kept_light(F, stage.scene);
+        if (options.bounces < 0) light.kept = kept_light(F, stage);
         relax_constant_elements(input, F, light);
         light.work.rays = light.work.links = F.rays();
     } else if (*options.form_factors == FormFactorKind::hemicube) {

@@ -34,7 +34,8 @@ class Shooter {
                 std::max(first[i], static_cast<std::size_t>(std::max(0.0, std::ceil(sum / total * rays - offset))));
         }
         std::vector<std::uint32_t> target(first[n], missed);
-        parallel_ranges(n, 16, [&](std::size_t begin, std::size_t end) { trace(first, begin, end, target); });
+        std::vector<Spectrum> colour(stage_.glass.empty() ? 0 : first[n]);
+        parallel_ranges(n, 16, [&](std::size_t begin, std::size_t end) { trace(first, begin, end, target, colour); });
         rays_shot += first[n];
 
         // Sum in the order of the rays, so that results are bitwise equal for any number of threads.
@@ -43,7 +44,7 @@ class Shooter {
             if (first[i] == first[i + 1]) continue;
             const Spectrum carried = (total / (rays * mean(power[i]))) * power[i];
             for (std::size_t k = first[i]; k < first[i + 1]; ++k)
-                if (target[k] != missed) arrived[target[k]] += carried;
+                if (target[k] != missed) arrived[target[k]] += colour.empty() ? carried : colour[k] * carried;
         }
         if (!passed_.empty()) pass(arrived);
         return arrived;
@@ -63,13 +64,14 @@ class Shooter {
     }
 
     void trace(const std::vector<std::size_t>& first, std::size_t begin, std::size_t end,
-               std::vector<std::uint32_t>& target) const {
+               std::vector<std::uint32_t>& target, std::vector<Spectrum>& colour) const {
         ElementRays rays(stage_, tree_, locator_);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t count = first[i + 1] - first[i];
             if (count == 0) continue;
             rays.cast(numbering_.leaves[i], hash(seed_, static_cast<std::uint64_t>(Stream::shooting), step_, i),
-                      std::span(target).subspan(first[i], count));
+                      std::span(target).subspan(first[i], count), 0, ElementRays::Leave::front, {},
+                      colour.empty() ? std::span<Spectrum>() : std::span(colour).subspan(first[i], count));
         }
     }
 

@@ -181,6 +181,11 @@ class Scene {
     const std::vector<PunctualLight>& lights() const { return lights_; }
     /// Returns the panes of clear glass, split into convex polygons.
     const std::vector<Pane>& panes() const { return panes_; }
+    /// Replaces the transmissivity of pane i by t(pane), in [0, 1] for every band.
+    template <class Transmissivity>
+    void set_transmissivities(const Transmissivity& t) {
+        for (Pane& pane : panes_) pane.transmissivity = t(pane);
+    }
     /// Returns the skies and suns.
     const DistantLight& distant() const { return distant_; }
     /// Replaces the light from outside.

@@ -9,7 +9,7 @@
 namespace exitance {
 
 std::size_t ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first,
-                              Leave leave, std::span<float> counts) {
+                              Leave leave, std::span<float> counts, std::span<Spectrum> colours) {
     const std::size_t count = leaves.size();
     const Patch& patch = tree_.patch(e);
     const RegionId region = leave == Leave::as_met ? tree_.region(e) : RegionId();
@@ -25,6 +25,8 @@ std::size_t ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uin
     met_directions(stage_.scene, region, n, coordinates_[0], coordinates_[1], directions_);
     if (!counts.empty()) aim(tree_.region(e), n, patch.at(tree_.centre(e)), counts);
     stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_, Mirrored::followed);
+    for (std::size_t k = 0; k < colours.size(); ++k)
+        colours[k] = stage_.glass.of(hits_[k], origins_[k], directions_[k]);
     queries_.clear(), of_ray_.clear();
     std::fill(leaves.begin(), leaves.end(), missed);
     for (std::size_t k = 0; k < count; ++k) {

@@ -25,10 +25,11 @@ class ElementRays {
 
     /// Casts leaves.size() rays and writes for each the number of the leaf whose front it hits, or `missed`. Uses the
     /// points of sequence `key` from number `first` on. If `counts` is given (one number per ray), half of the rays are
-    /// aimed at openings where that reduces the noise (`PortalAim`), and counts[k] becomes the weight of ray k. Returns
-    /// the number of rays that hit nothing at all, neither fronts nor backs.
+    /// aimed at openings where that reduces the noise (`PortalAim`), and counts[k] becomes the weight of ray k. If
+    /// `colours` is given, colours[k] becomes the colour that panes give to ray k (`GlassColours`). Returns the number
+    /// of rays that hit nothing at all, neither fronts nor backs.
     std::size_t cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0,
-                     Leave leave = Leave::front, std::span<float> counts = {});
+                     Leave leave = Leave::front, std::span<float> counts = {}, std::span<Spectrum> colours = {});
 
   private:
     void aim(RegionId region, const Normal& n, const Point& centre, std::span<float> counts);

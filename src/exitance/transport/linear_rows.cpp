@@ -99,6 +99,7 @@ std::vector<LinearRows::NodePlace> LinearRows::number_nodes(const Stage& stage, 
     }
     hits_.resize(at);
     if (stage.rooms.portals()) counts_.assign(at, 1);
+    if (!stage.glass.empty()) colours_.assign(at, Spectrum(1.0));
     return places;
 }
 
@@ -120,6 +121,7 @@ void LinearRows::cast(const Stage& stage, std::span<const NodePlace> places, con
             stage.tracer.nearest(directions, place, region, found, Mirrored::followed);
             for (std::size_t i = 0; i < count; ++i) {
                 if (found[i].surface.is_none() || !found[i].front) continue;
+                if (!colours_.empty()) colours_[first + i] = stage.glass.of(found[i], place, directions[i]);
                 const Point y = place_of(stage.scene, found[i], place, directions[i]);
                 const auto [element, uv] = locator.find(stage.scene.surfaces()[found[i].surface].region, y);
                 hits_[first + i] = {numbering.number[element], quantised(uv.x), quantised(uv.y)};
@@ -162,7 +164,7 @@ Spectrum LinearRows::read(const std::vector<Corners>& corners, const Node& node)
         const Hit& hit = hits_[i];
         if (hit.leaf == missed) continue;
         const double u = hit.u / quantised_one, v = hit.v / quantised_one;
-        const double counts = counts_.empty() ? 1 : static_cast<double>(counts_[i]);
+        const Spectrum counts = weight(i);
         const Corners& c = corners[hit.leaf];
         if (leaves_[met_[hit.leaf]].triangle)
             sum += counts * ((1 - u - v) * c[0] + u * c[1] + v * c[2]);
@@ -237,7 +239,7 @@ Spectrum LinearRows::gather_at(std::size_t node, std::span<const Spectrum> nodal
         const Spectrum E = leaves_[leaf].triangle
                                ? (1 - u - v) * c[0] + u * c[1] + v * c[2]
                                : (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * c[3] + u * c[2]);
-        sum += (counts_.empty() ? 1 : static_cast<double>(counts_[i])) * (leaves_[leaf].reflectance * E);
+        sum += weight(i) * leaves_[leaf].reflectance * E;
     }
     return sum / static_cast<double>(nodes_[node].last_ray - nodes_[node].first_ray);
 }

@@ -27,7 +27,8 @@ class LinearRows final : public TransportOperator {
     DealtUnknowns dealt() const override { return dealt_; }
     void gather_own(std::span<const Spectrum> nodal, std::span<Spectrum> out) const override;
     std::size_t memory_bytes() const override {
-        return sizeof(Hit) * hits_.size() + sizeof(float) * counts_.size() + sizeof(Node) * nodes_.size();
+        return sizeof(Hit) * hits_.size() + sizeof(float) * counts_.size() + sizeof(Spectrum) * colours_.size() +
+               sizeof(Node) * nodes_.size();
     }
     /// Rays of all processes. Each process stores only the rows of its own nodes.
     std::size_t rays() const { return rays_; }
@@ -71,6 +72,10 @@ class LinearRows final : public TransportOperator {
     /// Reflected light at the corners of the leaves in `met_`. `values`: own and fetched nodal values.
     std::vector<Corners> reflected(std::span<const Spectrum> values) const;
     Spectrum read(const std::vector<Corners>& corners, const Node& node) const;
+    Spectrum weight(std::size_t ray) const {
+        return (counts_.empty() ? 1 : static_cast<double>(counts_[ray])) *
+               (colours_.empty() ? Spectrum(1.0) : colours_[ray]);
+    }
     void read_own(const std::vector<Corners>& corners, std::span<Spectrum> out) const;
 
     DealtUnknowns dealt_{0};
@@ -83,7 +88,8 @@ class LinearRows final : public TransportOperator {
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;
     std::vector<Hit> hits_;
-    std::vector<float> counts_;  ///< Weight of each ray; empty if all are 1.
+    std::vector<float> counts_;      ///< Weight of each ray; empty if all are 1.
+    std::vector<Spectrum> colours_;  ///< Factors of panes on each ray's bands; empty if all are 1.
     std::vector<ElementId> ids_;
 };
 

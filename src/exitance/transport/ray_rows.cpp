@@ -76,6 +76,7 @@ RayRows::RayRows(const Stage& stage, const NumberedLeaves& leaves, const RowRays
     hits_.assign(first_.back(), missed);
     escaped_.assign(dealt_.own_count(), 0);
     if (stage.rooms.portals()) counts_.assign(first_.back(), 1);
+    if (!stage.glass.empty()) colours_.assign(first_.back(), Spectrum(1.0));
 
     parallel_own_ranges(
         n, block,
@@ -85,8 +86,9 @@ RayRows::RayRows(const Stage& stage, const NumberedLeaves& leaves, const RowRays
             for (std::size_t i = begin; i < end && !(stop && stop->requested()); ++i) {
                 const auto row = of_row(std::span(hits_), i);
                 const auto counts = counts_.empty() ? std::span<float>() : of_row(std::span(counts_), i);
+                const auto colours = colours_.empty() ? std::span<Spectrum>() : of_row(std::span(colours_), i);
                 escaped_[dealt_.place(i)] = static_cast<std::uint32_t>(
-                    rays.cast(numbering.leaves[i], points[i].key, row, points[i].first, leave, counts));
+                    rays.cast(numbering.leaves[i], points[i].key, row, points[i].first, leave, counts, colours));
                 note_touched("rays", row.size());
             }
         },
@@ -101,6 +103,7 @@ void RayRows::tell_rows() {
     const auto row_of = [&](auto& values) { return [&](std::size_t i) { return of_row(std::span(values), i); }; };
     exchange_values(size(), dealt_.block(), row_of(hits_), "cast rows");
     if (!counts_.empty()) exchange_values(size(), dealt_.block(), row_of(counts_), "cast rows");
+    if (!colours_.empty()) exchange_values(size(), dealt_.block(), row_of(colours_), "cast rows");
     exchange_values(
         size(), dealt_.block(), [&](std::size_t i) -> std::uint32_t& { return escaped_[i]; }, "cast rows");
 }
@@ -131,7 +134,9 @@ void RayRows::leaves_met(std::size_t i, std::vector<std::uint32_t>& out) const {
 Spectrum RayRows::read(std::size_t place, std::span<const Spectrum> radiosity) const {
     Spectrum sum;
     for (std::size_t k = first_[place]; k < first_[place + 1]; ++k)
-        if (hits_[k] != missed) sum += (counts_.empty() ? 1 : counts_[k]) * radiosity[hits_[k]];
+        if (hits_[k] != missed)
+            sum += (counts_.empty() ? 1 : counts_[k]) *
+                   (colours_.empty() ? radiosity[hits_[k]] : colours_[k] * radiosity[hits_[k]]);
     return sum / static_cast<double>(first_[place + 1] - first_[place]);
 }
 

@@ -56,7 +56,10 @@ class RayRows final : public TransportOperator {
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
     DealtUnknowns dealt() const override { return dealt_; }
     void gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const override;
-    std::size_t memory_bytes() const override { return 4 * (hits_.size() + counts_.size()) + 8 * first_.size(); }
+    std::size_t memory_bytes() const override {
+        return 4 * (hits_.size() + counts_.size() + escaped_.size()) + 8 * first_.size() +
+               sizeof(Spectrum) * colours_.size();
+    }
     /// Rays of all processes together.
     std::size_t rays() const { return rays_; }
     static constexpr std::uint32_t missed = 0xffffffffu;
@@ -99,6 +102,7 @@ class RayRows final : public TransportOperator {
         hits_;  ///< Indices of the leaves among own and fetched values; leaf numbers if every process has all rows.
     std::vector<std::uint32_t> escaped_;  ///< For every own row, its rays that hit nothing.
     std::vector<float> counts_;           ///< Weight of each ray; empty if all are 1.
+    std::vector<Spectrum> colours_;       ///< Factors of panes on the bands of each ray; empty if all are 1.
     FetchedValues fetched_;
 };
 

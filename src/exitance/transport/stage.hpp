@@ -10,6 +10,7 @@
 #include "exitance/mesh/contact_lines.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/transport/light_rooms.hpp"
+#include "exitance/visibility/glass/glass_colours.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -23,6 +24,7 @@ struct Stage {
           concave(find_concave_borders(s, pieces)),
           contacts(s),
           tracer(s),
+          glass(s),
           occluders(s),
           direct(s, occluders),
           place_light(direct, tracer) {
@@ -36,6 +38,7 @@ struct Stage {
     std::vector<ConcaveBorders> concave;
     ContactLines contacts;
     RayTracer tracer;
+    GlassColours glass;  ///< Colours of the rays of `tracer`.
     Occluders occluders;
     DirectLight direct;
     PlaceLight place_light;  ///< Direct light at places, exact or by rays.

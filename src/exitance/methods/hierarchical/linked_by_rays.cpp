@@ -60,7 +60,7 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     const RayRows rows(stage, numbered,
                        {dealt_out(input.knobs.solve_rays), input.options.seed, Dealing::by_piece, RowsHeld::by_owner});
     light.work.rays = rows.rays();
-    light.kept = kept_light(rows, stage.scene);
+    light.kept = kept_light(rows, stage);
     reflect_again(rows, stage.scene, light);
 
     const NodalBasis constants(HierarchyBasis::haar);

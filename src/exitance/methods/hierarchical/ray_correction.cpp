@@ -22,7 +22,7 @@ void correct_by_rays(Hierarchy& h) {
     const RayRows rows(h.input.stage, {light.tree, light.numbering, locator},
                        {h.input.knobs.solve_rays, h.input.options.seed});
     light.work.rays += rows.rays();
-    light.kept = kept_light(rows, h.input.stage.scene);
+    light.kept = kept_light(rows, h.input.stage);
     const std::size_t before = light.report.iterations;
     relax_constant_elements(h.input, rows, light);
     light.report.iterations += before;

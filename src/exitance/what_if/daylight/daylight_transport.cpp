@@ -19,13 +19,19 @@ namespace {
 constexpr std::size_t max_sweeps = 200;
 constexpr double max_change = 2e-4;  ///< Relative RMS change of the last sweep.
 
-/// Returns the scene under a sky and a ground of radiance 1, which replace all patches.
+/// Returns the scene under a sky and a ground of radiance 1, which replace all patches, with grey glass.
 Scene under_patches(Scene scene) {
     DistantLight light;
     SkyModel below = uniform_sky();
     below.below = true;
     light.domes = {{uniform_sky(), Spectrum(pi)}, {below, Spectrum(pi)}};
     scene.put_under(std::move(light));
+    // Light is luminous here, one number for all bands: rays must pass coloured glass in proportion to that number.
+    scene.set_transmissivities([](const Pane& pane) {
+        return is_grey(pane.transmissivity)
+                   ? pane.transmissivity
+                   : transmissivity_of(Spectrum(luminous_sum(pane.transmission(1))), pane.index);
+    });
     return scene;
 }
 

@@ -1,0 +1,74 @@
+#include "exitance/visibility/glass/glass_colours.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "exitance/base/random.hpp"
+
+namespace exitance {
+namespace {
+
+/// Counts of rays from a place below a coloured pane, times their colours, against the pane's transmission and
+/// reflection in every band.
+TEST(GlassColours, BandsOfRaysAreRightInTheMean) {
+    SceneDescription d;
+    d.file = "glass.obj";
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    d.points = {{-9, -9, 2}, {-9, 9, 2}, {9, 9, 2}, {9, -9, 2}, {-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 0}, {{4, 5, 6, 7}, 0, 0, 0}};
+    Pane pane;
+    pane.corners = {{-9, -9, 1}, {9, -9, 1}, {9, 9, 1}, {-9, 9, 1}};
+    pane.transmissivity = Spectrum(0.2), pane.transmissivity[0] = 0.95;
+    d.panes = {pane};
+    CheckedScene checked = make_scene(std::move(d));
+    ASSERT_TRUE(static_cast<bool>(checked.scene));
+    const Scene& scene = *checked.scene;
+    const RayTracer tracer(scene);
+    const GlassColours colours(scene);
+    ASSERT_FALSE(colours.empty());
+    constexpr std::size_t rays = 1 << 15;
+    for (const double cosine : {1.0, 0.5}) {
+        const double sine = std::sqrt(1 - cosine * cosine);
+        std::vector<Vec3> directions(rays);
+        const ScrambledSobol points(7);
+        for (std::uint32_t i = 0; i < rays; ++i) {
+            const double angle = 2 * pi * points(i, 0);
+            directions[i] = {sine * std::cos(angle), sine * std::sin(angle), cosine};
+            directions[i] = (1 + points(i, 1)) * directions[i];  // the fate of a ray depends on its direction
+        }
+        std::vector<RayHit> hits(rays);
+        const Point x{0.1, 0.2, 0.5};
+        tracer.nearest(directions, x, RegionId(), hits, Mirrored::followed);
+        Spectrum through, back;
+        for (std::size_t i = 0; i < rays; ++i) {
+            if (hits[i].surface.is_none()) continue;
+            (hits[i].mirror < 0 ? through : back) += colours.of(hits[i], x, directions[i]) / static_cast<double>(rays);
+        }
+        const double noise = 4 / std::sqrt(static_cast<double>(rays));
+        for (std::size_t b = 0; b < bands; ++b) {
+            EXPECT_NEAR(through[b], scene.panes()[0].transmission(cosine)[b], noise) << cosine << ", " << b;
+            EXPECT_NEAR(back[b], scene.panes()[0].reflection(cosine)[b], noise) << cosine << ", " << b;
+        }
+    }
+}
+
+TEST(GlassColours, GreyPanesGiveNone) {
+    SceneDescription d;
+    d.file = "glass.obj";
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    d.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+    d.faces = {{{0, 1, 2}, 0, 0, 0}};
+    Pane pane;
+    pane.corners = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}}, pane.transmissivity = Spectrum(0.5);
+    d.panes = {pane};
+    const CheckedScene checked = make_scene(std::move(d));
+    ASSERT_TRUE(static_cast<bool>(checked.scene));
+    EXPECT_TRUE(GlassColours(*checked.scene).empty());
+}
+
+}  // namespace
+}  // namespace exitance
