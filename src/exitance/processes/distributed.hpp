@@ -38,8 +38,9 @@ inline bool is_first_process() {
 
 /// Makes stop requests common to all processes during its lifetime. `asked` is a request to one process (signals, its
 /// deadline); `agreed` is the common request that the work checks. At the end of every shared loop a request to any
-/// process becomes a request to all, so that no process continues with fewer results than others. Within a shared loop
-/// a process with a request stops its own part at once. Only one object may exist at a time.
+/// process becomes a request to all, so that no process continues with fewer results than others. All then know the
+/// same cause. Within a shared loop a process with a request stops its own part at once. Only one object may exist at a
+/// time.
 class StopTogether {
   public:
     StopTogether(const StopRequest& asked, StopRequest& agreed);
