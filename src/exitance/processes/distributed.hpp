@@ -111,6 +111,14 @@ inline bool is_own(std::size_t i, std::size_t grain) {
     return i / grain % processes() == own_process();
 }
 
+/// Number of the indices below `count` that belong to this process.
+inline std::size_t own_count(std::size_t count, std::size_t grain) {
+    const std::size_t blocks = (count + grain - 1) / grain, own = own_process(), all = processes();
+    if (blocks <= own) return 0;
+    const std::size_t missing = is_own(blocks * grain - 1, grain) ? blocks * grain - count : 0;  // in the last block
+    return (blocks - own + all - 1) / all * grain - missing;
+}
+
 /// Runs `parallel_ranges` over this process's own blocks of `grain` indices. Observes stop requests.
 void parallel_own_ranges(std::size_t count, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& body, const Work& work = {});
