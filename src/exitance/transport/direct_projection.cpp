@@ -235,6 +235,7 @@ class Projector {
         const double least = is_crowd_ ? share_in_crowd(out_, share_ * stage_.area / mean_area_) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
+            if (out_.tree.size() >= options_.max_elements) break;
             const double area = out_.tree.area(e);
             const double of_bodies = needs_ ? area * needs_->allowed_squared(e) : HUGE_VAL;
             const double error = is_crowd_ ? error_of_shape(out_, e) : area * out_.fit[e].misfit_squared,
