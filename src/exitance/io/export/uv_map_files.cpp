@@ -11,6 +11,7 @@
 #include "exitance/io/export/directional_files.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/pictures/display.hpp"
 #include "exitance/io/scenes/obj/obj_writer.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
@@ -62,9 +63,7 @@ ToneMap uv_tones(const UvLightMaps& light, LightMapQuantity quantity) {
 Image uv_preview(const UvLightMap& map, LightMapQuantity quantity, const ToneMap& tones) {
     Image image(map.light.size.width, map.light.size.height);
     for (std::size_t i = 0; i < map.light.size.texels(); ++i) {
-        const DisplayColour colour = tones(value_at(values_of(map, quantity), i));
-        for (std::size_t c = 0; c < 3; ++c)
-            image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(colour[c])));
+        set_pixel(image, i, tones(value_at(values_of(map, quantity), i)));
     }
     return image;
 }
