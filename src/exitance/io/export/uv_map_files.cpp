@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/base/version.hpp"
 #include "exitance/base/words.hpp"
@@ -77,7 +78,7 @@ std::string unwrapped_json(const Unwrapped& unwrapped) {
 
 std::string object_json(const UvObject& o, const UvLightMap& map) {
     const double density =
-        std::sqrt(static_cast<double>(map.light.size.texels()) * o.map_area / std::max(o.area, 1e-300));
+        std::sqrt(static_cast<double>(map.light.size.texels()) * o.map_area / std::max(o.area, min_divisor));
     return fmt::format(
         "    {{\"name\": {}, \"map\": {}, \"triangles\": {}, \"charts\": {}, \"texels_per_metre\": {:.6g}, "
         "\"overlapping\": {}, \"overlaps_others\": {}, \"outside\": {}, \"moved_charts\": {}, \"mirrored\": {}, "
