@@ -177,7 +177,12 @@ TEST_F(ProgramOfProcesses, ChooseAMethodThatSupportsSeveralProcesses) {
 TEST_F(ProgramOfProcesses, StopTogetherAtTheTimeLimit) {
     const Finished run = run_on(3, solve("limited", {"--error", "0.0003", "--time-limit", "4", "--json"}));
     EXPECT_EQ(run.status, 4) << run.err;
-    EXPECT_TRUE(load_solution(folder / "limited.h5"));
+    Result<Solution> written = load_solution(folder / "limited.h5");
+    ASSERT_TRUE(written);
+    EXPECT_EQ(written->statistics.stopped_by, StopReason::time_limit);
+    for (const std::string& warning : written->statistics.warnings)
+        EXPECT_EQ(warning.find("was stopped"), std::string::npos) << warning;
+    EXPECT_NE(run.err.find("the time limit ended the solve"), std::string::npos) << run.err;
 }
 
 TEST_F(ProgramOfProcesses, ResumeFromACheckpointOfAnotherNumberOfProcesses) {

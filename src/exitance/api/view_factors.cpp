@@ -1,9 +1,12 @@
 #include "exitance/view_factors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "exitance/api/inside.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/row_factors.hpp"
 
@@ -27,9 +30,12 @@ std::optional<Error> find_misfit(const ViewFactors& f) {
 }  // namespace
 
 std::optional<Error> find_misuse(const Scene& scene, const ViewFactorOptions& options) {
-    if (!(options.error >= 1e-6 && options.error <= 0.5)) return usage("must be from 1e-6 to 0.5", "error");
-    if (options.tolerance && !(*options.tolerance >= 1e-12 && *options.tolerance <= 0.1))
-        return usage("must be from 1e-12 to 0.1", "tolerance");
+    const auto is_within = [](double value, double least, double most) { return value >= least && value <= most; };
+    const auto range = [](double least, double most) { return fmt::format("must be from {:g} to {:g}", least, most); };
+    if (!is_within(options.error, min_row_error, max_row_error))
+        return usage(range(min_row_error, max_row_error), "error");
+    if (options.tolerance && !is_within(*options.tolerance, min_entry_error, max_entry_error))
+        return usage(range(min_entry_error, max_entry_error), "tolerance");
     if (!(options.smallest >= 0 && options.smallest < 1)) return usage("must be from 0 to below 1", "smallest");
     if (options.time_limit && !(*options.time_limit > 0)) return usage("must be above 0 seconds", "time_limit");
     if (options.threads < 0) return usage("must be at least 0", "threads");

@@ -20,7 +20,7 @@ struct Reports final : Progress {
 
 TEST(LoopProgress, OnlyTheDrivingThreadReportsAndFractionsRise) {
     Reports reports;
-    LoopProgress progress(&reports, 40, 0.5, 1);
+    LoopProgress progress({&reports, 0.5, 1}, 40);
     parallel_for(40, 1, [&](std::size_t) {
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
         progress.add_one();

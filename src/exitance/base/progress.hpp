@@ -31,9 +31,9 @@ class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// The cause of a stop before the deadline: a user (SIGINT, a caller of the library), SIGTERM, or a limit on
-    /// memory.
-    enum class Cause : std::uint8_t { none, interrupt, termination, memory_limit };
+    /// The cause of a stop: the deadline, a limit on memory, a user (SIGINT, a caller of the library), or SIGTERM. If
+    /// several processes stop for different causes, the last one in this order counts.
+    enum class Cause : std::uint8_t { none, time_limit, memory_limit, interrupt, termination };
 
     /// Requests a stop. The cause of the first request is kept. Async-signal-safe.
     void interrupt(Cause cause = Cause::interrupt) {
@@ -43,7 +43,17 @@ class StopRequest {
     }
     void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
 
-    Cause cause() const { return cause_.load(std::memory_order_relaxed); }
+    /// Requests a stop, or replaces the cause of one, by what several processes agreed on.
+    void agree_on(Cause cause) {
+        cause_.store(cause, std::memory_order_relaxed);
+        if (!interrupted()) interrupt(cause);
+    }
+
+    /// The cause of the stop; none if no stop is requested.
+    Cause cause() const {
+        const Cause given = cause_.load(std::memory_order_relaxed);
+        return given == Cause::none && out_of_time() ? Cause::time_limit : given;
+    }
     bool interrupted() const { return interrupted_at_.load(std::memory_order_acquire) != 0; }
     bool out_of_time() const { return Clock::now() >= deadline_; }
     /// Seconds until the deadline; infinite if there is none, negative after it has passed.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/polygon.hpp"
 
 namespace exitance {
@@ -42,7 +43,7 @@ bool is_free(const Flat& flat, std::span<const std::uint32_t> rest, std::uint32_
 /// Shape quality of a triangle: area over the square of its longest side.
 double shape(const Flat& flat, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const Vec2 u = flat.at[b] - flat.at[a], v = flat.at[c] - flat.at[b], w = flat.at[a] - flat.at[c];
-    return cross(u, v) / std::max({dot(u, u), dot(v, v), dot(w, w), 1e-300});
+    return cross(u, v) / std::max({dot(u, u), dot(v, v), dot(w, w), min_divisor});
 }
 
 bool stays_convex(const Flat& flat, const std::vector<std::uint32_t>& piece) {

@@ -1,4 +1,5 @@
 #include "exitance/basis/element_polynomials.hpp"
+#include "exitance/base/limits.hpp"
 
 namespace exitance {
 
@@ -8,7 +9,7 @@ ElementPolynomials::ElementPolynomials(const ElementTree& tree, ElementId e, con
       straight_(square_ ? 4 : 3),
       size_(curved ? (square_ ? 9 : 6) : straight_),
       middle_(tree.centre(e)) {
-    Vec2 reach{1e-300, 1e-300};
+    Vec2 reach{min_divisor, min_divisor};
     for (const Vec2& corner : tree.domain(e))
         reach = {std::max(reach.x, std::abs(corner.x - middle_.x)), std::max(reach.y, std::abs(corner.y - middle_.y))};
     scale_ = {1 / reach.x, 1 / reach.y};

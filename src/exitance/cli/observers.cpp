@@ -24,9 +24,7 @@ constexpr std::array<Vec3, 8> around_the_horizon{
 /// Returns the eyes of a Honeybee model's views.
 Result<std::vector<Observer>> eyes_of_model(const std::string& path) {
     const HoneybeeModel model = read_honeybee_model(path);
-    for (const Finding& finding : model.findings)
-        if (finding.kind == Finding::Kind::error)
-            return Error{ErrorCode::bad_input, finding.message, path, finding.hint};
+    if (const std::optional<Error> error = model.first_error(path)) return *error;
     std::vector<Observer> out;
     for (const HoneybeeEye& eye : model.eyes) out.push_back({eye.name, eye.at, eye.direction});
     if (out.empty())

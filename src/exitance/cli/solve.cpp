@@ -295,9 +295,6 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);
     SolveStatistics& statistics = solution->statistics;
-    // With several processes the solver records any stop request as an interrupt; `common` has the reason.
-    if (statistics.stopped_by == StopReason::interrupt && signal != ExitCode::interrupted)
-        statistics.stopped_by = signal ? StopReason::termination : common.reason();
     if (std::optional<std::string> end = message_of_early_end(statistics, arguments.options)) {
         terminal.progress().warn(*end);
         statistics.warnings.push_back(std::move(*end));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/basis/small_system.hpp"
 
@@ -89,8 +90,8 @@ struct SectorSlopes {
     }
     void factor() {
         // Regularization on the order of rounding errors: slivers do not determine the slope across themselves.
-        constexpr double rounding = 1e-14, smallest = 1e-300;  // derived from double precision
-        const double least = rounding * (xx + yy) + smallest;
+        constexpr double rounding = 1e-14;  // derived from double precision
+        const double least = rounding * (xx + yy) + min_divisor;
         l_xx = std::sqrt(xx + least), l_xy = xy / l_xx;
         l_yy = std::sqrt(std::max(yy + least - l_xy * l_xy, least));
     }

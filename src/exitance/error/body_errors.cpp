@@ -78,6 +78,7 @@ class BodySurvey {
           error_(error),
           max_(max_rays),
           left_(max_rays),
+          share_shown_(check.begins_at),
           leaves_(leaves_of_bodies(check)),
           measured_(unmeasured_bodies()),
           is_known_(check.bodies.all.size(), false),
@@ -116,9 +117,9 @@ class BodySurvey {
     const BodyCheck& c_;
     const std::function<double(std::size_t)>& light_of_room_;
     double error_;
-    const std::size_t max_;     ///< Rays allowed.
-    std::size_t left_;          ///< Rays that remain.
-    double share_shown_ = 0.5;  ///< Share of the phase that is done, for the progress; bodies are its second half.
+    const std::size_t max_;  ///< Rays allowed.
+    std::size_t left_;       ///< Rays that remain.
+    double share_shown_;     ///< Share of the phase that is done, for the progress.
     std::vector<std::vector<ElementId>> leaves_;
     std::vector<BodyMeasure> measured_;
     std::vector<PointError> close_points_;
@@ -170,10 +171,13 @@ std::size_t BodySurvey::work(const CheckPlan& plan, unsigned rays, std::size_t p
 
 std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> points) {
     std::vector<ResidualSample> out(points.size());
-    const double done = 1 - 0.5 * static_cast<double>(left_) / static_cast<double>(std::max<std::size_t>(1, max_));
-    LoopProgress progress(c_.progress, points.size(), std::exchange(share_shown_, done), done, "bodies");
+    constexpr std::size_t grain = 4;
+    const double left = static_cast<double>(left_) / static_cast<double>(std::max<std::size_t>(1, max_)),
+                 done = 1 - (1 - c_.begins_at) * left;
+    LoopProgress progress({c_.progress, std::exchange(share_shown_, done), done, "bodies"},
+                          own_count(points.size(), grain));
     shared_ranges(
-        points.size(), 4,
+        points.size(), grain,
         [&](std::size_t begin, std::size_t end) {
             ResidualSampler::Workspace w;
             for (std::size_t i = begin; i < end && !c_.is_stopped(); ++i) {

@@ -74,6 +74,7 @@ struct BodyCheck {
     /// Errors by the points of the certificate, for bodies whose own points do not resolve an error; empty: unknown.
     std::span<const BodyAtPoints> at_points = {};
     Progress* progress = nullptr;  ///< Receives the share of the rays that were cast; null: no reports.
+    double begins_at = 0;          ///< Fraction of the phase before this measurement, which is the rest of it.
     bool is_stopped() const { return stop && stop->requested(); }
 };
 

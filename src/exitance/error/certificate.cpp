@@ -58,6 +58,7 @@ struct Certifier::Content {
     const ElementLocator& coarse;
     CoarseResponse response;
     std::size_t looks = 0;
+    double share_shown = 0;  ///< Share of the phase that is done, for the progress; bodies are its second half.
     std::vector<ResidualSample> samples;  ///< Samples of all calls of `measure`.
     /// Smooth part of the error after the last `measure`, by leaf number of the coarse mesh.
     std::vector<Spectrum> late;
@@ -92,7 +93,7 @@ struct Certifier::Content {
     }
     void plan_checks(std::span<const WeightedSample> places);
     CheckPlan plan_checks_from(std::size_t room, std::span<const WeightedSample> places) const;
-    void measure_residuals();
+    void measure_residuals(std::size_t later);
     void measure_p99(Certificate& out);
     void measure_each_body(Certificate& out);
     std::vector<BodyAtPoints> bodies_at_points() const;
@@ -140,8 +141,9 @@ void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
     for (std::size_t room = 0; room < plans.size(); ++room) plans[room] = plan_checks_from(room, of_room[room]);
 }
 
-/// Measures the residual at further stratified points, twice at each.
-void Certifier::Content::measure_residuals() {
+/// Measures the residual at further stratified points, twice at each. `later`: number of calls that are expected to
+/// follow.
+void Certifier::Content::measure_residuals(std::size_t later) {
     const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
     const std::vector<WeightedSample> places = options.places.empty()
                                                    ? stratified_places(stage, indirect.tree, narrow, options, seed)
@@ -151,9 +153,9 @@ void Certifier::Content::measure_residuals() {
     const ResidualSampler sampler = this->sampler();
     if (looks == 0) plan_checks(places);
     const bool may_stop = looks > 0;
-    LoopProgress progress(options.progress, places.size(), 0, 0.5, "points");
+    const double from = std::exchange(share_shown, share_shown + (0.5 - share_shown) / static_cast<double>(1 + later));
     if (sampler.measure(places, plans, seed, std::span(samples).subspan(before), may_stop ? options.stop : nullptr,
-                        &progress))
+                        {options.progress, from, share_shown, "points"}))
         ++looks;
     else
         samples.resize(before);
@@ -279,9 +281,10 @@ void Certifier::Content::measure_each_body(Certificate& out) {
         bodies = {{body.surfaces, body.area, mean_reflected, out.estimate, samples.size(), body.first}};
     } else {
         const std::vector<BodyAtPoints> at_points = bodies_at_points();
-        const BodyCheck body_check{
-            stage,        indirect,     b,         check,           sampler(), *options.bodies, late,
-            options.seed, options.stop, at_points, options.progress};
+        const BodyCheck body_check{stage,     indirect,         b,
+                                   check,     sampler(),        *options.bodies,
+                                   late,      options.seed,     options.stop,
+                                   at_points, options.progress, share_shown};
         const auto light = [&](std::size_t room) { return light_of_room(room); };
         MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
         bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
@@ -380,9 +383,9 @@ std::vector<FaceError> Certifier::surface_errors() const {
     return exitance::surface_errors(points, of_rooms);
 }
 
-Certificate Certifier::measure() {
+Certificate Certifier::measure(std::size_t later) {
     if (content_->mean_reflected <= 0) return {};
-    content_->measure_residuals();
+    content_->measure_residuals(later);
     return content_->judge();
 }
 

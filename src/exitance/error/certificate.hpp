@@ -126,8 +126,9 @@ class Certifier {
     ~Certifier();
 
     /// Measures the residual at `options.points` more points, and returns the estimate from all points so far. Its
-    /// `rays` counts those of all calls. If a stop is requested during a further call, its points are dropped.
-    Certificate measure();
+    /// `rays` counts those of all calls. If a stop is requested during a further call, its points are dropped. `later`:
+    /// number of calls that may follow, for the progress, which they continue.
+    Certificate measure(std::size_t later = 0);
 
     /// Sets `p99` of the result of the last `measure`, and adds the rays cast to its `rays`. The points with the
     /// largest apparent errors are measured again, since these are mostly noise; after a stop, they keep that noise.

@@ -134,9 +134,11 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPl
 
 bool ResidualSampler::measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans,
                               std::uint64_t seed, std::span<ResidualSample> samples, const StopRequest* stop,
-                              LoopProgress* progress) const {
+                              PhasePart part) const {
+    constexpr std::size_t grain = 8;
+    LoopProgress progress(std::move(part), own_count(places.size(), grain));
     shared_ranges(
-        places.size(), 8,
+        places.size(), grain,
         [&](std::size_t begin, std::size_t end) {
             Workspace w;
             for (std::size_t k = begin; k < end && !(stop && stop->requested()); ++k) {
@@ -147,7 +149,7 @@ bool ResidualSampler::measure(std::span<const WeightedSample> places, std::span<
                     sum_elements(seed, k, plan, samples[k], w);
                 else
                     cast_rays(seed, k, plan, samples[k], w);
-                if (progress) progress->add_one();
+                progress.add_one();
             }
         },
         [&](std::size_t k) -> ResidualSample& { return samples[k]; }, {"certificate"});

@@ -63,8 +63,7 @@ class ResidualSampler {
     /// light at hits of rays from each room is checked. Returns false if a stop was requested before all places were
     /// measured. `progress` counts the places. O(places x rays), parallel.
     bool measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans, std::uint64_t seed,
-                 std::span<ResidualSample> samples, const StopRequest* stop = nullptr,
-                 LoopProgress* progress = nullptr) const;
+                 std::span<ResidualSample> samples, const StopRequest* stop = nullptr, PhasePart part = {}) const;
 
     /// Sets the position of a sample and the light delivered there.
     void locate(const WeightedSample& place, ResidualSample& sample, Workspace& w) const;

@@ -39,10 +39,12 @@ class Interpolation {
             fitted_.resize(out_.tree.size());
             locator_.emplace(indirect_.tree, stage_.scene.regions().size());
             find_even_noise();
-            LoopProgress progress(options_.progress, active.size(), fraction_before_round(round),
-                                  fraction_before_round(round + 1), std::to_string(active.size()) + " elements");
+            constexpr std::size_t grain = 8;
+            LoopProgress progress({options_.progress, fraction_before_round(round), fraction_before_round(round + 1),
+                                   std::to_string(active.size()) + " elements"},
+                                  own_count(active.size(), grain));
             shared_ranges_of(
-                fitted_.span(), active.size(), 8,
+                fitted_.span(), active.size(), grain,
                 [&](std::size_t begin, std::size_t end) {
                     DirectFitRoom room;
                     for (std::size_t i = begin; i < end; ++i) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/form_factors/quad_lanes.hpp"
@@ -68,7 +69,7 @@ EXITANCE_INLINE void weigh_corners(const Normal& n, const Quads<Real>& quads, co
         weight[i] = above / (squared * squared) * (i < 2 ? Real{} + 1 : last);
         sum += weight[i];
     }
-    const Real scale = inward / max(sum, Real{} + 1e-300);  // derived from the smallest double: avoids division by zero
+    const Real scale = inward / max(sum, Real{} + min_divisor);
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) weight[i] *= scale;
 }

@@ -1,5 +1,6 @@
 #include "exitance/gather/path_tracer.hpp"
 
+#include "exitance/base/limits.hpp"
 #include "exitance/direct/source_point.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/form_factors/met_directions.hpp"
@@ -107,7 +108,7 @@ double density_of(double chance, double area, double squared_distance, double co
 
 /// Weight of a sample by the first of two densities, by the balance heuristic.
 double balance(double first, double second) {
-    return first / (first + std::max(second, 1e-300));  // given by rounding: avoids division by zero
+    return first / (first + std::max(second, min_divisor));
 }
 
 }  // namespace

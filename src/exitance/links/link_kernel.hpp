@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exitance/base/four.hpp"
+#include "exitance/base/limits.hpp"
 #include "exitance/links/link_sites.hpp"
 
 namespace exitance {
@@ -31,7 +32,7 @@ class SourceNodes {
         const four::Vec from{four::Real{} + x.x, four::Real{} + x.y, four::Real{} + x.z};
         for (std::size_t g = 0; g < groups; ++g) {
             const four::Vec d = at_[g] - from;
-            const four::Real zero{}, rr = four::dot(d, d) + 1e-300;  // derived from rounding: no division by zero
+            const four::Real zero{}, rr = four::dot(d, d) + min_divisor;
             const four::Real cosines = four::max(four::dot(n, d), zero) * four::max(-four::dot(normal_, d), zero);
             out[g] = weight_[g] * cosines / (rr * rr);
         }

@@ -107,7 +107,7 @@ StopTogether::~StopTogether() {
 }
 
 bool stops_within_loop(const StopRequest& agreed) {
-    if (team.asked && team.asked->requested()) team.agreed->interrupt();
+    if (team.asked && team.asked->requested()) team.agreed->interrupt(team.asked->cause());
     return agreed.requested();
 }
 
@@ -251,12 +251,13 @@ void send_from_first(void* data, std::size_t size, const char* what) {
 }
 
 void meet(std::size_t things, const char* what) {
-    const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
+    if (team.agreed) stops_within_loop(*team.agreed);
+    const auto cause = static_cast<std::uint64_t>(team.agreed ? team.agreed->cause() : StopRequest::Cause::none);
     const std::uint64_t place = ++team.meetings << 40 ^ things;
     constexpr double ticks = 1e9;  // per second
     const double dealt = result_sharing().dealt_seconds, since = dealt - std::exchange(team.dealt_before, dealt),
                  taken = processor_seconds(), all_since = taken - std::exchange(team.taken_before, taken);
-    std::array<std::uint64_t, 4> own{place, ~place, stops, static_cast<std::uint64_t>(ticks * since)}, all{};
+    std::array<std::uint64_t, 4> own{place, ~place, cause, static_cast<std::uint64_t>(ticks * since)}, all{};
     const Stopwatch watch;
     reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     DealtTime& of_step = team.dealt[what];
@@ -265,7 +266,7 @@ void meet(std::size_t things, const char* what) {
     count("agreement", sizeof own);
     if (all[0] != place || all[1] != ~place)
         end_job((std::string("the processes have come to different places, here at: ") + what).c_str());
-    if (all[2] != 0 && team.agreed) team.agreed->interrupt();
+    if (all[2] != 0 && team.agreed) team.agreed->agree_on(static_cast<StopRequest::Cause>(all[2]));
 }
 
 void exchange(std::span<char> all, std::span<const std::size_t> first, const char* what) {

@@ -38,8 +38,9 @@ inline bool is_first_process() {
 
 /// Makes stop requests common to all processes during its lifetime. `asked` is a request to one process (signals, its
 /// deadline); `agreed` is the common request that the work checks. At the end of every shared loop a request to any
-/// process becomes a request to all, so that no process continues with fewer results than others. Within a shared loop
-/// a process with a request stops its own part at once. Only one object may exist at a time.
+/// process becomes a request to all, so that no process continues with fewer results than others. All then know the
+/// same cause. Within a shared loop a process with a request stops its own part at once. Only one object may exist at a
+/// time.
 class StopTogether {
   public:
     StopTogether(const StopRequest& asked, StopRequest& agreed);
@@ -108,6 +109,14 @@ const std::map<std::string, DealtTime>& dealt_time();
 /// turn: neighbouring indices have similar cost, so that the load is balanced.
 inline bool is_own(std::size_t i, std::size_t grain) {
     return i / grain % processes() == own_process();
+}
+
+/// Number of the indices below `count` that belong to this process.
+inline std::size_t own_count(std::size_t count, std::size_t grain) {
+    const std::size_t blocks = (count + grain - 1) / grain, own = own_process(), all = processes();
+    if (blocks <= own) return 0;
+    const std::size_t missing = is_own(blocks * grain - 1, grain) ? blocks * grain - count : 0;  // in the last block
+    return (blocks - own + all - 1) / all * grain - missing;
 }
 
 /// Runs `parallel_ranges` over this process's own blocks of `grain` indices. Observes stop requests.

@@ -21,6 +21,7 @@ TEST(Distributed, ASingleProcessRunsTheWholeLoop) {
     std::iota(expected.begin(), expected.end(), 0);
     EXPECT_EQ(out, expected);
     for (std::size_t i = 0; i < out.size(); ++i) EXPECT_TRUE(is_own(i, 7));
+    for (const std::size_t count : {0u, 1u, 7u, 8u, 1000u}) EXPECT_EQ(own_count(count, 7), count);
     EXPECT_TRUE(traffic().empty());
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "exitance/base/bvh.hpp"
@@ -57,8 +56,8 @@ class Inspector {
     void meet();
     void find_open_edges();
     void find_turned_faces();
-    /// Returns the face on the other side of an edge; none unless exactly two faces share it.
-    std::optional<std::uint32_t> face_across(std::uint32_t e) const;
+    /// Returns the edge of the face on the other side of an edge; null unless exactly two faces share it.
+    const Edge* edge_across(std::uint32_t e) const;
     // `first`: index in edges_ of the first edge of every face, and the number of edges.
     std::vector<std::vector<std::uint32_t>> patches_of(const std::vector<std::uint32_t>& faces,
                                                        const std::vector<std::uint32_t>& first) const;
@@ -139,10 +138,9 @@ void Inspector::find_open_edges() {
     }
 }
 
-std::optional<std::uint32_t> Inspector::face_across(std::uint32_t e) const {
+const Edge* Inspector::edge_across(std::uint32_t e) const {
     const Meeting& meeting = meetings_[edges_[e].first];
-    if (meeting.count != 2) return {};
-    return edges_[meeting.one == e ? meeting.other : meeting.one].face.value;
+    return meeting.count == 2 ? &edges_[meeting.one == e ? meeting.other : meeting.one] : nullptr;
 }
 
 /// Divides faces into patches that are connected over edges of exactly two faces.
@@ -155,7 +153,8 @@ std::vector<std::vector<std::uint32_t>> Inspector::patches_of(const std::vector<
         left.erase(left.begin());
         for (std::size_t i = 0; i < patch.size(); ++i)
             for (std::uint32_t e = first[patch[i]]; e < first[patch[i] + 1]; ++e)
-                if (const auto across = face_across(e); across && left.erase(*across) > 0) patch.push_back(*across);
+                if (const Edge* across = edge_across(e); across && left.erase(across->face.value) > 0)
+                    patch.push_back(across->face.value);
     }
     return out;
 }
@@ -170,11 +169,11 @@ bool Inspector::is_turned(const std::vector<std::uint32_t>& patch, const std::ve
     std::size_t border = 0, shared = 0;  // edges
     for (const std::uint32_t f : patch)
         for (std::uint32_t e = first[f]; e < first[f + 1]; ++e) {
-            const std::optional<std::uint32_t> across = face_across(e);
-            if (across && own.contains(*across)) continue;
+            const Edge* const across = edge_across(e);
+            if (across && own.contains(across->face.value)) continue;
             ++border;
             if (!across) continue;
-            if (objects.contains(scene_.surfaces()[SurfaceId(*across)].group)) return true;
+            if (objects.contains(scene_.surfaces()[across->face].group)) return true;
             ++shared;
         }
     // Three of the four sides of a wall, but not two: a ceiling may touch two outer walls.
@@ -198,14 +197,13 @@ void Inspector::find_turned_faces() {
         bool is_orientable = true;
         for (std::size_t i = 0; i < together.size(); ++i)
             for (std::uint32_t e = first[together[i]]; e < first[together[i] + 1]; ++e) {
-                const Meeting& meeting = meetings_[edges_[e].first];
-                if (meeting.count != 2) continue;
-                const Edge& across = edges_[meeting.one == e ? meeting.other : meeting.one];
-                const bool turns = across.from == edges_[e].from;
+                const Edge* const across = edge_across(e);
+                if (!across) continue;
+                const bool turns = across->from == edges_[e].from;
                 const char expected = (side[together[i]] == same) != turns ? same : opposite;
-                char& there = side[across.face.value];
+                char& there = side[across->face.value];
                 if (there == unseen)
-                    there = expected, together.push_back(across.face.value);
+                    there = expected, together.push_back(across->face.value);
                 else
                     is_orientable &= there == expected;
             }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/quadrature.hpp"
 #include "exitance/mesh/conforming.hpp"
@@ -56,9 +57,7 @@ class Projection {
         constexpr double precision = 1e-14;
         const std::size_t count = right_.size();
         std::vector<Spectrum> x(count), r(count), p(count), Mp(count);
-        for (std::size_t i = 0; i < count; ++i)
-            x[i] =
-                right_[i] / std::max(mass_of(i), 1e-300);  // derived from the smallest double: avoids division by zero
+        for (std::size_t i = 0; i < count; ++i) x[i] = right_[i] / std::max(mass_of(i), min_divisor);
         multiply(x, Mp);
         Spectrum rz, start;
         for (std::size_t i = 0; i < count; ++i) {

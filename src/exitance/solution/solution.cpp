@@ -22,6 +22,7 @@ StopReason reason_of(const StopRequest& stop) {
             return StopReason::termination;
         case StopRequest::Cause::memory_limit:
             return StopReason::memory_limit;
+        case StopRequest::Cause::time_limit:
         case StopRequest::Cause::none:
             return StopReason::time_limit;
     }

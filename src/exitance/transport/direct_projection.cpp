@@ -165,9 +165,10 @@ class Projector {
         smoothing_.resize(out_.tree.size(), 1);
         if (is_crowd_) return;
         const double smoothed = 1 / (calibrated::direct_tolerance * calibrated::direct_tolerance);
-        LoopProgress progress(options_.progress, active.size(), fraction_before_round(depth), before_fits(depth),
-                              std::to_string(active.size()) + " elements");
-        const std::vector<float> unsmoothed = unsmoothed_shares(stage_, out_.tree, active, stop_, &progress);
+        const std::vector<float> unsmoothed =
+            unsmoothed_shares(stage_, out_.tree, active, stop_,
+                              {options_.progress, fraction_before_round(depth), before_fits(depth),
+                               std::to_string(active.size()) + " elements"});
         for (std::size_t i = 0; i < active.size(); ++i)
             smoothing_[active[i]] = static_cast<float>(smoothed / (smoothed + (1 - smoothed) * unsmoothed[i]));
     }
@@ -209,10 +210,12 @@ class Projector {
                 stage_, out_.tree, active, ErrorShare::small_area(stage_.area, active.size()),
                 [&](ElementId e) { return noise_on(e); }, out_.fit, stop_);
         found_.assign(active.size(), {});
-        LoopProgress progress(options_.progress, active.size(), before_fits(depth), fraction_before_round(depth + 1),
-                              std::to_string(active.size()) + " elements");
+        constexpr std::size_t grain = 8;
+        LoopProgress progress({options_.progress, before_fits(depth), fraction_before_round(depth + 1),
+                               std::to_string(active.size()) + " elements"},
+                              own_count(active.size(), grain));
         shared_ranges_of(
-            std::span(found_), active.size(), 8,
+            std::span(found_), active.size(), grain,
             [&](std::size_t begin, std::size_t end) {
                 DirectFitRoom room;
                 for (std::size_t i = begin; i < end; ++i) {
@@ -232,6 +235,7 @@ class Projector {
         const double least = is_crowd_ ? share_in_crowd(out_, share_ * stage_.area / mean_area_) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
+            if (out_.tree.size() >= options_.max_elements) break;
             const double area = out_.tree.area(e);
             const double of_bodies = needs_ ? area * needs_->allowed_squared(e) : HUGE_VAL;
             const double error = is_crowd_ ? error_of_shape(out_, e) : area * out_.fit[e].misfit_squared,

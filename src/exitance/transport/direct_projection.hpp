@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -17,6 +19,7 @@ struct DirectProjectionOptions {
     int max_depth = 8;     ///< Levels of refinement below the initial mesh.
     /// Smallest area of an element that is split, m^2; empty: only `tolerance` limits splitting.
     std::optional<double> min_area = {};
+    std::size_t max_elements = SIZE_MAX;  ///< No element is split once the tree has that many.
     /// On a stop request: if true, return an empty tree at once; if false, estimate the remaining elements by rays, so
     /// that there is a result.
     bool may_give_up = false;

@@ -87,14 +87,16 @@ double unsmoothed_share(const Stage& stage, const ElementTree& tree, ElementId e
 }  // namespace
 
 std::vector<float> unsmoothed_shares(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
-                                     const StopRequest& stop, LoopProgress* progress) {
+                                     const StopRequest& stop, PhasePart part) {
     std::vector<float> out(leaves.size());
+    constexpr std::size_t grain = 256;
+    LoopProgress progress(std::move(part), own_count(leaves.size(), grain));
     shared_ranges(
-        leaves.size(), 256,
+        leaves.size(), grain,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
                 out[i] = static_cast<float>(unsmoothed_share(stage, tree, leaves[i]));
-                if (progress) progress->add_one();
+                progress.add_one();
             }
         },
         [&](std::size_t i) -> float& { return out[i]; }, {"narrow places"});

@@ -28,7 +28,7 @@ bool is_narrow_leaf(const Stage& stage, const ElementTree& tree, ElementId e);
 /// the Fourier transform of the kernel d^2 / (pi (r^2 + d^2)^2). The lengths of the rays take the place of d, which is
 /// a guess: surfaces need not be parallel. `progress` counts the leaves.
 std::vector<float> unsmoothed_shares(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
-                                     const StopRequest& stop, LoopProgress* progress = nullptr);
+                                     const StopRequest& stop, PhasePart part = {});
 
 struct DirectProjection;
 

@@ -6,12 +6,12 @@
 
 namespace exitance {
 
-/// Default of R, the limit on the error of every row.
-inline constexpr double default_row_error = 1e-3;
+/// R, the limit on the error of every row: default, and limits for programs and users.
+inline constexpr double default_row_error = 1e-3, min_row_error = 1e-7, max_row_error = 0.5;
 
-/// Relative error of every entry above `smallest_entry`: default, and limits.
-inline constexpr double default_entry_error = 1e-4;
-inline constexpr double min_entry_error = 1e-12, max_entry_error = 0.1;  // derived from double precision, and from use
+/// Relative error of every entry above `smallest_entry`: default, and limits for programs and users. The least one is
+/// derived from double precision.
+inline constexpr double default_entry_error = 1e-4, min_entry_error = 1e-12, max_entry_error = 0.1;
 
 /// Entries below need no relative accuracy. Derived from default_row_error: a thousand of them are as much.
 inline constexpr double smallest_entry = 1e-6;

@@ -20,6 +20,12 @@ constexpr double unseen_brightness = 0.05;
 /// Share of a cell's size: strips of this width always contain points of its rules.
 constexpr double between_points = 0.125;
 constexpr double unseen_strip = 0.1;  ///< Share of a strip's light that may be lost if no point is in it.
+/// Share of the receiver's average light of which a strip may lose `unseen_strip`, if its points found less.
+constexpr double unseen_average = 0.3;
+/// Place of the cut of a cell in the second computation of a pair, whose points must differ from those of the first.
+constexpr double uneven_halves = 0.45;
+/// Smallest height of an edge over the receiver, as a share of its size, that counts for crowding().
+constexpr double min_crowding_height = 0.002;
 /// Error of a cell as a share of the largest difference between its quadrature rules.
 constexpr double error_per_difference = 0.5;
 constexpr int max_halvings = 6;  ///< Limit on the halvings of a source.
@@ -146,7 +152,7 @@ double ClutteredExchange::share_under_edges(const Cell& cell) const {
 /// Light that the points of a cell below an edge may have missed: a share of the light that they found or, if that is
 /// little, a share of a third of the receiver's average.
 double ClutteredExchange::unseen(const Cell& cell) const {
-    return unseen_strip * std::max(cell.integral, 0.3 * total_ * area_of(cell.corners()) / area_);
+    return unseen_strip * std::max(cell.integral, unseen_average * total_ * area_of(cell.corners()) / area_);
 }
 
 /// Places the nodes of three rules without common nodes, the most accurate one last.
@@ -283,7 +289,7 @@ void ClutteredExchange::halve_worst() {
     std::pop_heap(heap_.begin(), heap_.end());
     const Cell cell = std::move(heap_.back());
     heap_.pop_back();
-    const double ratio = turned_ ? 0.45 : 0.5;
+    const double ratio = turned_ ? uneven_halves : 0.5;
     const auto corners = halves_of(cell.corners(), ratio);
     Cell one{corners[0], cell.count, 0, 0, {}}, two{corners[1], cell.count, 0, 0, {}};
     look(one, cell.sources), look(two, cell.sources);
@@ -342,7 +348,7 @@ double crowding(const Plane& plane, double size, std::span<const ConvexBlocker* 
         for (const ConvexBlocker::Edge& e : blocker->edges) {
             const Point &a = blocker->points[e.a], &b = blocker->points[e.b];
             const double height = 0.5 * (plane.signed_distance(a) + plane.signed_distance(b));
-            if (height > 0) sum += norm(b - a) / std::max(height, 0.002 * size);
+            if (height > 0) sum += norm(b - a) / std::max(height, min_crowding_height * size);
         }
     return sum;
 }

@@ -21,6 +21,26 @@ constexpr double surely_ignored = 0.3;
 /// allowance, cells along a common edge with the source would fail at every size, as their distance from it is
 /// proportional to their size.
 constexpr double near_part = 0.1;
+/// A cell is below an edge that passes its middle at less than this times the squared distance of its farthest corner.
+constexpr double under_edge = 1.5;
+/// Errors of 2 x 2 points, see OccludedExchange::is_settled_by_two_points(): of d, for triangles and quadrangles; of
+/// the value, by the largest deviation and by the variation. For entries that matter, and for others.
+struct TwoPointError {
+    double of_triangle, of_quad, of_most;
+    double variations;  ///< Variations, squared, per error of the value.
+};
+constexpr TwoPointError of_large{0.2, 0.03, 0.005, 270}, of_small{0.05, 0.005, 0.001, 2700};
+/// Tolerance below which cells are treated like those of entries that matter.
+constexpr double fine_tolerance = 1e-5;
+/// Error of the better of two rules as a share of their difference: behind several edges or in entries that matter, and
+/// behind one.
+constexpr double left_behind_edges = 0.1, left_behind_one = 0.03;
+/// Share of a cell's allowed error for its contour integral, and the limits of that tolerance.
+constexpr double exact_cell_share = 0.1, min_contour = 1e-12, max_contour = 1e-3;
+/// Allowed error of estimates below `surely_ignored`, as a share of demand.ignored.
+constexpr double ignored_share = 0.1;
+/// Share of a cell's allowed error for cells that see the whole source, or little light.
+constexpr double smooth_share = 0.3;
 constexpr double near_share = 0.5;  ///< Error of the better of two rules at an edge, as a share of their difference.
 
 double cross_area(std::span<const Vec2> corners) {
@@ -179,7 +199,7 @@ bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
         for (const ConvexBlocker::Edge& e : blocker->edges) {
             const Point &a = blocker->points[e.a], &b = blocker->points[e.b];
             if (frame_.height(a) <= slack && frame_.height(b) <= slack) continue;
-            if (squared_distance(middle, a, b) < 1.5 * squared) return true;
+            if (squared_distance(middle, a, b) < under_edge * squared) return true;
         }
     return false;
 }
@@ -197,12 +217,10 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     const double most = std::max(cell.glance.highest / middle - 1, 1 - cell.glance.lowest / middle),
                  varies = 3 * most * most, d = std::abs(cell.two_points - cell.area * middle);
     const bool is_triangle = cell.count == 3;  // three points of a triangle have only degree 2
-    double error = 0;
-    if (matters_)
-        error = (is_triangle ? 0.2 : 0.03) * d + cell.two_points * (varies * varies / 270 + 0.005 * most);
-    else
-        error = ((is_triangle ? 0.05 : 0.005) + 2 * d / std::max(cell.two_points, min_divisor)) * d +
-                cell.two_points * (varies * varies / 2700 + 0.001 * most);
+    const TwoPointError& share = matters_ ? of_large : of_small;
+    const double steep = matters_ ? 0 : 2 * d / std::max(cell.two_points, min_divisor);
+    const double error = ((is_triangle ? share.of_triangle : share.of_quad) + steep) * d +
+                         cell.two_points * (varies * varies / share.variations + share.of_most * most);
     return error + far * step * step <= task.allowed;
 }
 
@@ -210,8 +228,8 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
 /// kinks within a cell, where a line of sight touches three edges.
 double OccludedExchange::share_left(const Task& task) const {
     if ((dominates_ || task.whole >= 0) && is_under_an_edge(task.cell)) return near_share;
-    if (matters_ || relative_ < 1e-5) return 0.1;
-    return visible_.seen_edges().size() > 1 ? 0.1 : 0.03;
+    if (matters_ || relative_ < fine_tolerance) return left_behind_edges;
+    return visible_.seen_edges().size() > 1 ? left_behind_edges : left_behind_one;
 }
 
 /// Light that a cell may receive although all its points are dark. Zero if no critical line crosses it, else that of a
@@ -251,7 +269,7 @@ double OccludedExchange::exact(const Cell& cell, double allowed) const {
     for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
     const double most = cell.area * brightest(0);
     return exchange_area(std::span(corners).first(cell.count), pair_.source,
-                         std::clamp(0.1 * allowed / most, 1e-12, 1e-3));
+                         std::clamp(exact_cell_share * allowed / most, min_contour, max_contour));
 }
 
 /// Prepares cells near the source: their unoccluded integral is exact, and rules integrate only the hidden part, which
@@ -276,7 +294,7 @@ double OccludedExchange::settle_near_cells(int points) {
 /// their difference, but at least that due to the source's distance. The shares are from cells of rooms with blocks: of
 /// 150 accepted cells one errs by more than its allowance, of 2300 one by ten times that.
 double OccludedExchange::integrate_tasks() {
-    const bool fine = relative_ < 1e-5 || dominates_;
+    const bool fine = relative_ < fine_tolerance || dominates_;
     double total = 0;
     while (!tasks_.empty() && !stop_.requested()) {
         total += settle_near_cells(fine ? 5 : 3);
@@ -354,7 +372,7 @@ std::optional<double> OccludedExchange::operator()(const OccludedPair& pair, con
     }
     if (all) return unoccluded = true, 0;
 
-    ignored_ = 0.1 * demand.ignored;
+    ignored_ = ignored_share * demand.ignored;
     matters_ = estimate > demand.large;
     dominates_ = estimate > demand.dominating;
     const double never_matters = estimate < surely_ignored * demand.ignored ? ignored_ : demand.absolute;
@@ -367,13 +385,13 @@ std::optional<double> OccludedExchange::operator()(const OccludedPair& pair, con
         if (cell.complete && cell.glance.dark == cell.glance.count) continue;
         const double d = distance_to_source(cell);
         if (cell.complete && cell.glance.lit == cell.glance.count)
-            total += integrate_smooth(cell, d, 0.3 * share);
-        else if (cell.area * brightest(d) < 0.3 * share)
+            total += integrate_smooth(cell, d, smooth_share * share);
+        else if (cell.area * brightest(d) < smooth_share * share)
             total += cell.two_points;
         else
             tasks_.push_back({cell, d, share, cell.two_points, cell.glance, 0});
     }
-    enough_ = evaluations + cells_.size() * (relative_ < 1e-5 ? 1000 : 50) * (1 + 1000 / cells_.size());
+    enough_ = evaluations + cells_.size() * (relative_ < fine_tolerance ? 1000 : 50) * (1 + 1000 / cells_.size());
     return total + integrate_tasks();
 }
 

@@ -34,6 +34,11 @@ constexpr double negligible_overlap = 1e-4;
 constexpr double contour_share = 1e-4;  ///< Share of the error: tolerance of the contour integral.
 constexpr double integrated_share =     ///< Share of the error for integrated entries, with cancellation in sums.
     1e-2;
+/// Distances as shares of the scene's size: height up to which another face covers a face, and distance up to which
+/// faces count as touching.
+constexpr double covering_height = 1e-5, touching_distance = 1e-4;
+/// Faces are candidates above this share of the view factor at which a pair is cheaper by itself.
+constexpr double candidate_share = 0.1;
 constexpr std::size_t min_batches = 8, min_rays_a_batch = 16;
 /// Rays that find the shares of sky and backs: up to max_sky_rays, and at least sky_rays_per_error / R, so that a small
 /// share is noticed.
@@ -135,7 +140,7 @@ double RowEstimator::combined_limit(const RawRow& row) const {
 bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
     const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
     if (std::abs(dot(a.plane.n, b.plane.n)) < parallel_cosine) return false;
-    const double reach = 1e-5 * scene_.scene.size();
+    const double reach = covering_height * scene_.scene.size();
     for (std::size_t k = 0; k < 3; ++k)
         if (a.box.lo[k] > b.box.hi[k] + reach || b.box.lo[k] > a.box.hi[k] + reach) return false;
     const double height = a.plane.signed_distance(b.outline[0]);
@@ -149,9 +154,9 @@ bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
 void RowEstimator::find_candidates(std::size_t face) {
     const ViewFace& own = scene_.faces[face];
     const Point x = scene_.middles[face];
-    const double reach = scene_.radii[face] + 1e-4 * scene_.scene.size();
-    // A pair is treated individually if that saves at least this number of cast rays. A tenth of it is a safe limit.
-    const double negligible = 0.1 * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
+    const double reach = scene_.radii[face] + touching_distance * scene_.scene.size();
+    // A pair is treated individually if that saves at least this number of cast rays.
+    const double negligible = candidate_share * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
     candidates_.clear();
     under_others_ = false;
     scene_.near.visit(x, reach, negligible, [&](std::uint32_t j) {

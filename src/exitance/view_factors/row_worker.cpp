@@ -33,8 +33,14 @@ constexpr double entry_contour_share = 1e-4;
 /// ms per pair and one of 60 pairs missed the tolerance; halving alone took four times as long and missed ten.
 constexpr double cells_at_a_thousandth = 300, power_of_halving = 0.75;
 
+/// Convergence rate below which a pair is too near for Gauss points.
+constexpr double min_convergence = 1.5;
+/// Share of the tolerance for the error of Gauss points.
+constexpr double gauss_share = 0.01;
+
 std::size_t max_cells(double tolerance) {
-    return static_cast<std::size_t>(cells_at_a_thousandth * std::pow(1e-3 / tolerance, power_of_halving));
+    constexpr double thousandth = 1e-3;  // the tolerance that the number of cells is for
+    return static_cast<std::size_t>(cells_at_a_thousandth * std::pow(thousandth / tolerance, power_of_halving));
 }
 
 }  // namespace
@@ -44,11 +50,11 @@ std::size_t max_cells(double tolerance) {
 int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) const {
     const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
     const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
-    if (rho < 1.5) return max_points + 1;
+    if (rho < min_convergence) return max_points + 1;
     // A source near a large receiver is brighter somewhere than on average, by about the receiver's area over the
     // squared distance, which requires that many more digits.
     const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), min_divisor));
-    return std::max(2, static_cast<int>(std::ceil(std::log(peak / (0.01 * tolerance_)) / (2 * std::log(rho)))));
+    return std::max(2, static_cast<int>(std::ceil(std::log(peak / (gauss_share * tolerance_)) / (2 * std::log(rho)))));
 }
 
 void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {

@@ -64,7 +64,8 @@ ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
         for (const Point& p : b.points) box.add(p);
         boxes_.push_back(box);
     }
-    for (const ConvexBlocker& b : blockers_) planes_.add(b, 0.1 * slack_);
+    constexpr double enlarged = 0.1;  // share of the slack
+    for (const ConvexBlocker& b : blockers_) planes_.add(b, enlarged * slack_);
     hidden_.resize(faces_.size() * faces_.size());
     sides_.resize(faces_.size() * blockers_.size());
     standing_.resize(sides_.size());

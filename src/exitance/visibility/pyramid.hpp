@@ -4,11 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/vec.hpp"
 
 namespace exitance {
-
-constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle count as points; derived from rounding.
 
 /// Appends to `planes` the unit normals, pointing inwards, of the planes through the origin and the edges of a convex
 /// polygon. `facing`: positive if the polygon is counter-clockwise as seen from the origin, negative if clockwise.
@@ -19,7 +18,7 @@ inline bool add_pyramid(std::span<const Vec3> polygon, double facing, std::vecto
         const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
         const Vec3 normal = cross(b - a, a);
         const double squared = squared_norm(normal), reach = squared_norm(a) * squared_norm(b);
-        if (squared > no_width * no_width * reach)
+        if (squared > edge_on_sine * edge_on_sine * reach)
             planes.push_back(normal * (std::copysign(1.0, facing) / std::sqrt(squared)));
     }
     if (planes.size() < first + 3) {

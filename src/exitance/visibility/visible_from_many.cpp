@@ -13,8 +13,6 @@ namespace {
 /// Heights below this, times an edge's length and the square of `reach_`, count as zero. Derived from double precision:
 /// nine roundings.
 constexpr double rounding = 2e-15;
-/// Edges closer than this from everywhere count as one line. Derived from double precision: 4,500 roundings.
-constexpr double one_line = 1e-12;
 /// Roundings of the largest coordinate that may lie between edges on one line. Derived from the few roundings of each
 /// of the transformations that make and place a model; scanned gaps are far wider.
 constexpr double roundings_on_one_line = 64;
@@ -271,8 +269,8 @@ VisibleFromMany::Outlook VisibleFromMany::set(const PlaneFrame& frame, std::span
     reach_ = box.diagonal();
     double largest = 0;
     for (const Point& p : source) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    one_line_ = std::max(one_line, roundings_on_one_line * std::numeric_limits<double>::epsilon() * largest /
-                                       std::max(reach_, min_divisor));
+    one_line_ = std::max(zero_sine, roundings_on_one_line * std::numeric_limits<double>::epsilon() * largest /
+                                        std::max(reach_, min_divisor));
     is_crowded_ = source.size() > SightTables::max_corners;
     for (const ConvexBlocker* shape : blockers)
         if (add_blocker(*shape) == Kept::hides_all) return Outlook::hidden;

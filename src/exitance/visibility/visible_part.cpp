@@ -67,7 +67,7 @@ void make_pyramid(Workspace& scratch) {
         const Vec3 &a = scratch.source[i], &b = scratch.source[i + 1 == m ? 0 : i + 1];
         const Vec3 inward = cross(b - a, a);
         const double length = norm(inward);
-        if (length > no_width * norm(a) * norm(b)) scratch.source_pyramid.push_back(inward / length);
+        if (length > edge_on_sine * norm(a) * norm(b)) scratch.source_pyramid.push_back(inward / length);
     }
 }
 

@@ -1,4 +1,5 @@
 #include "exitance/cli/options/option_kinds.hpp"
+#include "exitance/view_factors/accuracy.hpp"
 
 namespace exitance {
 namespace {
@@ -16,6 +17,17 @@ constexpr std::array<std::pair<ReferenceFormat, std::string_view>, 5> reference_
     {ReferenceFormat::zsh, "zsh"},
     {ReferenceFormat::list, "list"},
 }};
+
+/// Declares an option whose value is a number from `least` to `most`.
+CLI::Option* add_range(CLI::App& app, const char* name, std::optional<double>& value, double least, double most,
+                       const char* help) {
+    const auto read = [=, &value](const std::string& word) {
+        value = read_number(name, word);
+        if (!(*value >= least && *value <= most))
+            throw CLI::ValidationError(name, fmt::format("must be between {} and {}, not {}", least, most, word));
+    };
+    return app.add_option_function<std::string>(name, read, help)->type_name("R");
+}
 
 }  // namespace
 
@@ -243,13 +255,9 @@ void declare(CLI::App& app, View3dArguments& arguments) {
         ->type_name("IN")
         ->required();
     app.add_option("OUT", arguments.output, "File with the factors (.vf) to write")->type_name("OUT")->required();
-    app.add_option_function<double>(
-           "--error", [&arguments](double e) { arguments.error = e; },
-           "Error of every row, found by rays. Default: the file's eps, at least 1e-3. An eps below 1e-4, or below "
-           "1e-3 in "
-           "scenes of up to 40 faces, is the tolerance of every factor, without rays")
-        ->type_name("R")
-        ->check(CLI::Range(1e-6, 1.0));
+    add_range(app, "--error", arguments.error, min_row_error, max_row_error,
+              "Error of every row, found by rays. Default: the file's eps, at least 1e-3. An eps below 1e-4, or below "
+              "1e-3 in scenes of up to 40 faces, is the tolerance of every factor, without rays");
     declare_work(app, arguments, arguments.threads);
 }
 
@@ -315,21 +323,12 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
            "Add exchange factors (script F) and Gebhart's factors of grey surfaces to .h5. kd: emissivities are "
            "1 - Kd; or a table (.csv) as for heat")
         ->type_name("kd|FILE");
-    const auto add_range = [&app](const char* name, std::optional<double>& value, double least, double most,
-                                  const char* help) {
-        const auto read = [=, &value](const std::string& word) {
-            value = read_number(name, word);
-            if (*value < least || *value > most)
-                throw CLI::ValidationError(name, fmt::format("must be between {} and {}, not {}", least, most, word));
-        };
-        return app.add_option_function<std::string>(name, read, help)->type_name("R");
-    };
     CLI::Option* const error =
-        add_range("--error", arguments.error, 1e-7, 0.5,
+        add_range(app, "--error", arguments.error, min_row_error, max_row_error,
                   "Limit on the error of every row, which at most one row in 100 exceeds. Default 1e-3. "
                   "Use it for heat balances");
     add_range(
-        "--tolerance", arguments.tolerance, 1e-12, 0.1,
+        app, "--tolerance", arguments.tolerance, min_entry_error, max_entry_error,
         "Relative error of every entry above 1e-6, instead of --error. It is slower; use it if single entries matter")
         ->excludes(error)
         ->excludes(transport);

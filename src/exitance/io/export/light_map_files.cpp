@@ -11,6 +11,7 @@
 #include "exitance/base/words.hpp"
 #include "exitance/io/export/directional_files.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/png.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
@@ -50,9 +51,7 @@ Image preview(const Scene& scene, const LightMaps& light, std::size_t m, LightMa
     const LightMap& map = light.maps[m];
     Image image(map.size.width, map.size.height);
     for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
-        const DisplayColour colour = tones(texel_value(scene, map, chart, i, quantity));
-        for (std::size_t c = 0; c < 3; ++c)
-            image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(colour[c])));
+        set_pixel(image, i, tones(texel_value(scene, map, chart, i, quantity)));
     });
     return image;
 }

@@ -12,6 +12,7 @@
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/export/reflected_maps.hpp"
+#include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/png.hpp"
 
 namespace exitance {
@@ -140,9 +141,7 @@ Image texture(const Scene& scene, const LightMaps& shown, std::size_t m, LightMa
         const DisplayColour colour = way == LightMapMaterial::unlit
                                          ? tone(scene.material(chart.region).exitance + map.at(i))
                                          : red_green_blue(map.at(i) / peak);
-        for (std::size_t c = 0; c < 3; ++c)
-            image.rgb[3 * i + c] =
-                static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(std::clamp(colour[c], 0.0, 1.0))));
+        set_pixel(image, i, colour);
     });
     return image;
 }

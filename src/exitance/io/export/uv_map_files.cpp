@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/base/version.hpp"
 #include "exitance/base/words.hpp"
 #include "exitance/io/export/directional_files.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/pictures/display.hpp"
 #include "exitance/io/scenes/obj/obj_writer.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
@@ -62,9 +64,7 @@ ToneMap uv_tones(const UvLightMaps& light, LightMapQuantity quantity) {
 Image uv_preview(const UvLightMap& map, LightMapQuantity quantity, const ToneMap& tones) {
     Image image(map.light.size.width, map.light.size.height);
     for (std::size_t i = 0; i < map.light.size.texels(); ++i) {
-        const DisplayColour colour = tones(value_at(values_of(map, quantity), i));
-        for (std::size_t c = 0; c < 3; ++c)
-            image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(colour[c])));
+        set_pixel(image, i, tones(value_at(values_of(map, quantity), i)));
     }
     return image;
 }
@@ -78,7 +78,7 @@ std::string unwrapped_json(const Unwrapped& unwrapped) {
 
 std::string object_json(const UvObject& o, const UvLightMap& map) {
     const double density =
-        std::sqrt(static_cast<double>(map.light.size.texels()) * o.map_area / std::max(o.area, 1e-300));
+        std::sqrt(static_cast<double>(map.light.size.texels()) * o.map_area / std::max(o.area, min_divisor));
     return fmt::format(
         "    {{\"name\": {}, \"map\": {}, \"triangles\": {}, \"charts\": {}, \"texels_per_metre\": {:.6g}, "
         "\"overlapping\": {}, \"overlaps_others\": {}, \"outside\": {}, \"moved_charts\": {}, \"mirrored\": {}, "

@@ -54,9 +54,7 @@ std::string band_name(std::size_t band) {
 
 Result<ProbeReader> ProbeReader::open_model(const std::string& path) {
     const HoneybeeModel model = read_honeybee_model(path);
-    for (const Finding& finding : model.findings)
-        if (finding.kind == Finding::Kind::error)
-            return Error{ErrorCode::bad_input, finding.message, path, finding.hint};
+    if (const std::optional<Error> error = model.first_error(path)) return *error;
     ProbePoints sensors;
     for (const HoneybeeGrid& grid : model.grids) {
         sensors.points.insert(sensors.points.end(), grid.points.begin(), grid.points.end());

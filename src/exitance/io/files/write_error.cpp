@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace exitance {
 
@@ -15,6 +17,13 @@ Error cannot_write(const std::string& path, int error) {
     if (error == EACCES || error == EPERM || error == EROFS)
         hint = "check the permissions of the folder, or write into another one";
     return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, hint};
+}
+
+Result<void> make_folder(const std::string& path) {
+    std::error_code failure;
+    std::filesystem::create_directories(path, failure);
+    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), path, ""};
+    return {};
 }
 
 }  // namespace exitance

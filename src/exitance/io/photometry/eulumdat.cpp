@@ -12,6 +12,13 @@ namespace {
 
 constexpr double max_planes = 3600;
 
+/// Reads a line that is one finite number, whose decimal separator may be a comma. Returns false for other lines.
+bool read_number(std::string_view line, double& value) {
+    std::string word(line);
+    if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
+    return number_of_word(word, value) == NumberKind::finite;
+}
+
 class EulumdatReader {
   public:
     EulumdatReader(std::string_view text, const std::string& name) : name_(name) {
@@ -66,14 +73,12 @@ Result<std::string> EulumdatReader::text(const char* what) {
     return shown(trimmed_line(lines_[at_++]));
 }
 
-/// Reads the number of the next line; the decimal separator may be a comma.
+/// Reads the number of the next line.
 Result<double> EulumdatReader::number(const std::string& what) {
     if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is the file complete?");
     const std::string_view line = trimmed_line(lines_[at_]);
-    std::string word(line);
-    if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
     double value = 0;
-    if (number_of_word(word, value) != NumberKind::finite)
+    if (!read_number(line, value))
         return error(fmt::format("'{}' is not a number (expected: {})", shown(line), what),
                      line.empty() ? "empty lines count: is one too many above?" : "");
     ++at_;
@@ -247,10 +252,8 @@ std::size_t EulumdatReader::stored_planes() const {
 std::size_t EulumdatReader::numbers_left() const {
     std::size_t n = 0;
     for (std::size_t i = at_; i < lines_.size(); ++i, ++n) {
-        std::string word(trimmed_line(lines_[i]));
-        if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
         double value = 0;
-        if (number_of_word(word, value) != NumberKind::finite) break;
+        if (!read_number(trimmed_line(lines_[i]), value)) break;
     }
     return n;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/polygon.hpp"
 #include "exitance/base/triangulation.hpp"
 #include "exitance/io/pictures/text.hpp"
@@ -41,7 +42,7 @@ class SceneView {
             along = std::max(along, std::abs(dot(d, up_)));
         }
         constexpr double margin = 0.94;
-        scale_ = 0.5 * margin * std::min(width / std::max(across, 1e-300), height / std::max(along, 1e-300));
+        scale_ = 0.5 * margin * std::min(width / std::max(across, min_divisor), height / std::max(along, min_divisor));
         middle_ = box.centre();
         depth_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -HUGE_VALF);
     }

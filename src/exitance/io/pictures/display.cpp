@@ -1,5 +1,6 @@
 #include "exitance/io/pictures/display.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
@@ -16,6 +17,13 @@ Spectrum reflected(const Pixel& pixel) {
 }
 
 }  // namespace
+
+void set_pixel(Image& image, std::size_t i, const DisplayColour& colour) {
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double value = srgb_encoded(std::clamp(colour[c], 0.0, 1.0));
+        image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * value));
+    }
+}
 
 double automatic_exposure(const Picture& picture) {
     double sum = 0, weight = 0, lamps = 0;
@@ -38,10 +46,10 @@ Image display_image(const Picture& picture, const ToneMap& tones) {
         const double share = pixel.front - pixel.emitting;
         const DisplayColour surfaces = share > 0 ? tones(reflected(pixel) / share) : DisplayColour();
         const DisplayColour lamps = tones(pixel.from_lamps);
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double linear = share * surfaces[c] + pixel.emitting * lamps[c] + pixel.back * back_of_surface;
-            image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(std::min(linear, 1.0))));
-        }
+        DisplayColour linear{};
+        for (std::size_t c = 0; c < 3; ++c)
+            linear[c] = share * surfaces[c] + pixel.emitting * lamps[c] + pixel.back * back_of_surface;
+        set_pixel(image, i, linear);
     });
     return image;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "exitance/io/pictures/png.hpp"
@@ -7,6 +8,9 @@
 #include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {
+
+/// Sets pixel number `i`, row by row, to a linear colour, whose values are limited to [0, 1].
+void set_pixel(Image& image, std::size_t i, const DisplayColour& colour);
 
 /// Exposure that brings reflected light to middle grey: 0.18 over the logarithmic mean of the picture, per W/m^2.
 /// Emitters are ignored unless nothing else is visible.

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/files/write_error.hpp"
 
 namespace exitance {
 namespace {
@@ -96,9 +97,8 @@ std::string DaylightPart::folder(const std::string& output) const {
 Result<DaylightPartWriter> DaylightPartWriter::create(const std::string& folder, const DaylightTask& task,
                                                       std::size_t sensors, std::size_t patches,
                                                       const std::string& fingerprint) {
+    if (const Result<void> made = make_folder(folder); !made) return made.error();
     std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
     // without this file the part counts as incomplete, until it is written at the end
     std::filesystem::remove(in(folder, "part.txt"), failure);
     const std::size_t hours = task.hours.size();

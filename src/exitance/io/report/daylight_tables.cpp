@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/write_error.hpp"
 
 namespace exitance {
 namespace {
@@ -245,9 +246,7 @@ DaylightFiles::DaylightFiles(std::string folder, const DaylightTask& task, std::
 
 Result<DaylightFiles> DaylightFiles::create(const std::string& folder, const DaylightTask& task,
                                             const DaylightFormats& formats) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    if (const Result<void> made = make_folder(folder); !made) return made.error();
     const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     Result<std::unique_ptr<HoursFile>> hours = make_hours_file(folder, formats.hours, task);
     if (!hours) return hours.error();

@@ -7,6 +7,7 @@
 
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/npy_file.hpp"
+#include "exitance/io/files/write_error.hpp"
 
 namespace exitance {
 namespace {
@@ -49,9 +50,7 @@ Result<void> write_array(const std::string& path, std::span<const GlareYear> yea
 
 Result<void> write_glare(const std::string& folder, std::span<const ProbePoint> views, std::span<const GlareYear> years,
                          std::span<const DaylightHour> hours, HoursFormat format) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    if (const Result<void> made = make_folder(folder); !made) return made.error();
     const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     const Result<void> written = format == HoursFormat::csv ? write_table(in("glare_hours.csv"), years, hours)
                                                             : write_array(in("glare_hours.npy"), years, hours.size());

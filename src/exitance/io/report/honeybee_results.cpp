@@ -1,4 +1,5 @@
 #include "exitance/io/report/honeybee_results.hpp"
+#include "exitance/io/files/write_error.hpp"
 
 #include <fmt/format.h>
 
@@ -43,9 +44,7 @@ HoneybeeResults::HoneybeeResults(std::string folder, const DaylightTask& task)
 }
 
 Result<HoneybeeResults> HoneybeeResults::create(const std::string& folder, const DaylightTask& task) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    if (const Result<void> made = make_folder(folder); !made) return made.error();
     return HoneybeeResults(folder, task);
 }
 

@@ -5,6 +5,7 @@
 
 #include "exitance/base/words.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/write_error.hpp"
 #include "exitance/io/report/isolux_plan.hpp"
 #include "exitance/io/report/requirements.hpp"
 
@@ -172,9 +173,7 @@ std::string observers_html(const ReportContent& content) {
 }
 
 Result<void> write_report_tables(const ReportContent& content, const std::string& folder) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    if (const Result<void> made = make_folder(folder); !made) return made.error();
     const auto in = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
     const ReportFigures figures = find_figures(content);
     if (const Result<void> written = write_file(in("planes.csv"), planes_csv(content, figures)); !written)

@@ -5,6 +5,7 @@
 #include "exitance/base/triangulation.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/files/base64.hpp"
+#include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report_figures.hpp"
 
@@ -16,9 +17,7 @@ Image toned_map(const Scene& scene, const LightMaps& light, std::size_t m, const
     const LightMap& map = light.maps[m];
     Image image(map.size.width, map.size.height);
     for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
-        const DisplayColour colour = tone(texel_value(scene, map, chart, i, LightMapQuantity::radiosity));
-        for (std::size_t c = 0; c < 3; ++c)
-            image.rgb[3 * i + c] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(colour[c])));
+        set_pixel(image, i, tone(texel_value(scene, map, chart, i, LightMapQuantity::radiosity)));
     });
     return image;
 }

@@ -65,9 +65,7 @@ class View3dReader {
     }
 
     void read_line(TextLines& lines) {
-        std::string line(lines.rest().substr(0, lines.rest().find_first_of("!/")));
-        std::replace_if(
-            line.begin(), line.end(), [](char c) { return c == ',' || c == '='; }, ' ');
+        const std::string line = view3d_items(lines.rest());
         TextLines items(line);
         if (!items.next()) return;
         line_ = lines.number();

@@ -31,6 +31,13 @@ std::string view3d_control_name(std::string_view word) {
     return name;
 }
 
+std::string view3d_items(std::string_view line) {
+    std::string out(line.substr(0, line.find_first_of("!/")));
+    std::replace_if(
+        out.begin(), out.end(), [](char c) { return c == ',' || c == '='; }, ' ');
+    return out;
+}
+
 bool is_view3d_control(std::string_view name) {
     static constexpr std::array<std::string_view, 12> names{"eps",  "out",  "encl", "emit", "row",  "col",
                                                             "list", "maxu", "maxo", "mino", "maxv", "prjd"};
@@ -45,9 +52,7 @@ Result<View3dControls> read_view3d_controls(const std::string& path) {
     const std::map<std::string, double*> known{{"eps", &out.eps}, {"row", &row},   {"col", &col},
                                                {"encl", &encl},   {"emit", &emit}, {"out", &format}};
     for (TextLines lines(*text); lines.next();) {
-        std::string line(lines.rest().substr(0, lines.rest().find_first_of("!/")));
-        std::replace_if(
-            line.begin(), line.end(), [](char c) { return c == ',' || c == '='; }, ' ');
+        const std::string line = view3d_items(lines.rest());
         TextLines items(line);
         if (!items.next()) continue;
         const int kind = std::tolower(static_cast<unsigned char>(items.word().front()));

@@ -17,6 +17,9 @@ struct View3dControls {
     std::string title;            ///< Text of the last `T` line.
 };
 
+/// Items of a line of a .vs3 file, separated by blanks: without its comment, and without commas and equals signs.
+std::string view3d_items(std::string_view line);
+
 /// Name of a control in lower case; View3D accepts either case.
 std::string view3d_control_name(std::string_view word);
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "exitance/base/check.hpp"
+#include "exitance/base/limits.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 
 namespace exitance {
@@ -100,7 +101,7 @@ LightLayer::LightLayer(const LayerTriangles& from, Form form) {
         c.lo = {std::min(c.lo.x, p.x), std::min(c.lo.y, p.y)};
         hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
     }
-    if (!from.points.empty()) c.size = {std::max(hi.x - c.lo.x, 1e-300), std::max(hi.y - c.lo.y, 1e-300)};
+    if (!from.points.empty()) c.size = {std::max(hi.x - c.lo.x, min_divisor), std::max(hi.y - c.lo.y, min_divisor)};
     c.scale = 0;
     for (std::size_t t = 0; t < from.corners.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k)

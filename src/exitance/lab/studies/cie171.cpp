@@ -10,6 +10,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/quadrature.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/write_error.hpp"
 #include "exitance/lab/cie171/cases.hpp"
 #include "exitance/lab/cie171/page.hpp"
 #include "exitance/methods/solve_scene.hpp"
@@ -148,9 +149,7 @@ std::vector<Cie171Summary> summarize(const std::vector<Cie171Row>& rows) {
 }
 
 Result<void> write_cie171(const std::string& folder, const std::vector<Cie171Row>& rows) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
+    if (const Result<void> made = make_folder(folder); !made) return made.error();
     // A comma in a point's name would start another field.
     const auto quoted = [](const std::string& text) {
         return text.find(',') == std::string::npos ? text : fmt::format("\"{}\"", text);

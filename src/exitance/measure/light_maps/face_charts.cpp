@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/triangulation.hpp"
 #include "exitance/measure/light_maps/common_corners.hpp"
 #include "exitance/measure/light_maps/uv_layout.hpp"
@@ -152,7 +153,7 @@ std::vector<std::uint8_t> find_overlapping(const Scene& scene, std::span<const F
                     set.triangles.push_back(t);
                 }
             }
-        const double size = std::max({hi.x - lo.x, hi.y - lo.y, 1e-300}) * across;
+        const double size = std::max({hi.x - lo.x, hi.y - lo.y, min_divisor}) * across;
         const Vec2 square{1.0 * (static_cast<int>(c) % across) / across, 1.0 * (static_cast<int>(c) / across) / across};
         for (std::size_t t = first; t < set.triangles.size(); ++t)
             for (Vec2& p : set.triangles[t].place) p = square + (1 / size) * (p - lo);

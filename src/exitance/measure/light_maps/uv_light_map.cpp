@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/measure/light_maps/tile_baker.hpp"
 
@@ -232,7 +233,7 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
         map.light.share.resize(size.texels());
         map.light.has_emission = options.component != Component::indirect;
         map.chart.resize(size.texels(), UvLayout::no_chart), map.quarters.resize(size.texels());
-        map.density = std::sqrt(static_cast<double>(size.texels()) * map_area[m] / std::max(area[m], 1e-300));
+        map.density = std::sqrt(static_cast<double>(size.texels()) * map_area[m] / std::max(area[m], min_divisor));
         out.maps.push_back(std::move(map));
     }
     return {};

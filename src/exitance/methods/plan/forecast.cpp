@@ -137,11 +137,28 @@ struct ForecastMesh {
     double finer() const { return leaves / own_leaves; }
 };
 
+/// Returns the number of leaves of a projection that takes about a second on one processor, from the numbers of
+/// emitters and faces: times would differ from run to run.
+double leaves_a_second(const Stage& stage) {
+    // Leaves with one emitter and few faces, faces that double the time of a leaf, and the time of a leaf with many
+    // emitters over that with one. Measured by `exitance solve --error 0.002 --dry-run --threads 1`: 62,000 leaves of
+    // `cornell` with 17 faces took a second, 26,000 of `complex` with 545, 5,000 of `clutter` with 3,012, and 6,000 to
+    // 12,000 of `office` with 647 faces and 14 emitters.
+    constexpr double leaves_of_one = 1e5, faces_that_double = 200, time_of_many = 2;
+    // More emitters are evaluated by a few rays. Derived from the projection, where exact light ends at that number.
+    constexpr std::size_t max_exact_emitters = 8;
+    const std::size_t count = stage.direct.emitters().size();
+    const double emitters =
+        count <= max_exact_emitters ? static_cast<double>(std::max<std::size_t>(1, count)) : time_of_many;
+    const auto faces = static_cast<double>(stage.scene.surfaces().size());
+    return leaves_of_one / (emitters * (1 + faces / faces_that_double));
+}
+
 /// Projects direct light for decreasing errors down to that of the solve. If the next projection would take too long or
-/// too much memory, the number of leaves is extrapolated.
+/// too much memory, the number of leaves is extrapolated. The first projection splits the pieces into at most
+/// `max_leaves` more elements.
 ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches) {
     constexpr double step = 4;          // factor between the errors of two projections
-    constexpr double max_seconds = 1;   // limit on the time of a projection, s: a forecast then takes a second or two
     constexpr double max_leaves = 1e5;  // limit on the leaves of a projection: about 100 MB
     // Factor on the number of leaves of divided pieces, from one projection to the next. Measured by `solve --dry-run`
     // without extrapolation: 2.4 to 3 in an office from 2% to 0.2%, 3.4 to 3.8 in `cornell` from 2% to 0.01%.
@@ -151,10 +168,11 @@ ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches) {
     double coarser = 1;
     while (step * coarser * error <= recognizable_error) coarser *= step;
     ForecastMesh out;
-    double growth = min_growth, seconds = 0, whole = 0;  // time of the last projection, and its undivided pieces
+    const double affordable = std::min(max_leaves, leaves_a_second(stage));
+    double growth = min_growth, whole = 0;  // `whole`: undivided pieces of the last projection
     for (; coarser >= 1; coarser /= step) {
         const double next = whole + growth * (out.leaves - whole);
-        if (out.leaves > 0 && (next > max_leaves || seconds * next > max_seconds * out.leaves)) {
+        if (out.leaves > 0 && next > affordable) {
             for (; coarser >= 1; coarser /= step) out.leaves = whole + growth * (out.leaves - whole);
             break;
         }
@@ -164,12 +182,12 @@ ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches) {
         mesh.grading_levels = std::min(mesh.grading_levels, plan.knobs.solve_mesh.grading_levels);
         if (patches && !plan.options.mesh_size)
             mesh = {calibrated::patch_edge * mesh.edge, std::max(0, mesh.grading_levels - 1)};
-        const Stopwatch watch;
-        out.light = project_direct_light(
-            stage,
-            {.mesh = mesh, .tolerance = (patches ? 2 : 1) * knobs.direct_tolerance, .min_area = plan.options.min_area},
-            never);
-        seconds = watch.seconds();
+        out.light = project_direct_light(stage,
+                                         {.mesh = mesh,
+                                          .tolerance = (patches ? 2 : 1) * knobs.direct_tolerance,
+                                          .min_area = plan.options.min_area,
+                                          .max_elements = stage.pieces.size() + static_cast<std::size_t>(max_leaves)},
+                                         never);
         out.own_leaves = static_cast<double>(out.light.tree.leaves().size());
         const double parts = out.leaves - whole;
         whole = 0;

@@ -55,7 +55,7 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
         options.summed = &summed;
     }
     Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
-    certificate_ = certifier.measure();
+    certificate_ = certifier.measure(demand ? 1 : 0);
     // The number of further points is chosen once. Points that are added until an estimate is small enough would make
     // it too small.
     const auto more = [&] {
@@ -63,7 +63,7 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
                                     margin(certificate_.points) * *demand, *demand);
     };
     for (std::size_t left = demand ? more() : 0; left > 0 && !stop_.requested(); --left)
-        certificate_ = certifier.measure();
+        certificate_ = certifier.measure(left - 1);
     const double noise = direct_light_noise_share();
     certificate_.add_independent_error(noise);
     if (!demand || may_be_last(*demand)) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/scene/joining/hash_chains.hpp"
 
@@ -21,7 +22,7 @@ std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance)
     // Cells are wider than the tolerance, so that few points are near a wall and need a search in neighbouring cells,
     // but narrow enough to contain few distinct points. Cell numbers are doubles: where they have no digits left, the
     // points have none for the tolerance either.
-    const double width = std::max(16 * tolerance, 1e-300);
+    const double width = std::max(16 * tolerance, min_divisor);
 
     HashChains chains(points.size());
     std::vector<std::uint32_t> placed;  // point of each entry of the chains

@@ -322,6 +322,13 @@ class ModelReader {
 
 }  // namespace
 
+std::optional<Error> HoneybeeModel::first_error(const std::string& path) const {
+    for (const Finding& finding : findings)
+        if (finding.kind == Finding::Kind::error)
+            return Error{ErrorCode::bad_input, finding.message, path, finding.hint};
+    return {};
+}
+
 bool is_honeybee_file(const std::string& path) {
     const std::string end = ending(path);
     if (end != ".json" || path.ends_with(".city.json")) return end == ".hbjson";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,9 @@ struct HoneybeeModel {
     std::vector<HoneybeeEye> eyes;   ///< Eyes of all views except parallel ones, in the order of the file.
     std::vector<HoneybeeDynamic> dynamic;
     std::vector<Finding> findings;  ///< Errors, and warnings about omitted parts.
+
+    /// The first error of the findings; empty if there is none. `path`: the file of the model.
+    std::optional<Error> first_error(const std::string& path) const;
 };
 
 /// True for files of Honeybee models: .hbjson, and .json files whose JSON names the type "Model" but not "CityJSON".

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/polygon.hpp"
 #include "exitance/io/scenes/textures/texture_cuts.hpp"
 
@@ -28,9 +29,9 @@ CutScale scale_of(const SceneDescription& d) {
         area += own, reflected += own * mean(material.reflectance), flux += own * mean(material.exitance);
     }
     constexpr double walls = 6;  // derived from a cube, whose width is the root of a sixth of its area
-    constexpr double none = 1e-300;
-    return {std::max(none, std::sqrt(area / walls)), std::max(none, area),
-            std::max(none, reflected * reflected / std::max(none, area)), std::max(none, flux), min_benefit};
+    return {std::max(min_divisor, std::sqrt(area / walls)), std::max(min_divisor, area),
+            std::max(min_divisor, reflected * reflected / std::max(min_divisor, area)), std::max(min_divisor, flux),
+            min_benefit};
 }
 
 /// A corner of a polygon that is cut: its texture coordinates and position.

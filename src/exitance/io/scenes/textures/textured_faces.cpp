@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "exitance/base/limits.hpp"
 #include "exitance/base/polygon.hpp"
 #include "exitance/scene/material_name.hpp"
 
@@ -81,7 +82,7 @@ void TexturedFaces::keep(VaryingFace face) {
 void TexturedFaces::add(std::size_t face, const PartColour& colour, double area) {
     const std::uint32_t own = out_->faces[face].material;
     const Material& material = out_->materials[own];
-    const double brightest = std::max(max(material.exitance), 1e-300);
+    const double brightest = std::max(max(material.exitance), min_divisor);
     const Spectrum &reflectance = colour.reflectance.mean, &exitance = colour.exitance.mean;
     reflects_.add(colour.reflectance, area, varies(colour.reflectance, material.reflectance), material.name);
     if (material.emits()) emits_.add(colour.exitance, area, varies(colour.exitance, material.exitance), material.name);
