@@ -100,8 +100,8 @@ struct MirroredLight::Sums {
         const double middle = mean(total()) / 4;
         double squares = 0;
         for (const Spectrum& q : quarter) squares += std::pow(mean(q) - middle, 2);
-        // Light of features that no sample may have met: half of the light of one sample, as for rays (RayLight).
-        const double missed = 0.5 * open / samples;
+        // If no sample found light, all may have missed it: half of the light of one open sample, as for rays (RayLight).
+        const double missed = middle > 0 ? 0 : 0.5 * open / samples;
         return (4.0 / 3 * squares + missed * missed) / (samples * samples);
     }
 };
@@ -159,8 +159,9 @@ MirroredLight::Sample MirroredLight::by_sky(const SurfacePoint& place, Panes& pa
     return {passing(place, mirror, onwards, {mirror + 2 * scene_.size() * onwards, RegionId()}) * open, mean(open)};
 }
 
-/// Share of light that passes the way from a place to a point of a pane, and the further way along `onwards` (of length
-/// 1) to the end, in the mean: 0 if something blocks one of them.
+/// Factors on the bands of a ray from a place to a point of a pane that mirrors it, and along `onwards` (of length 1)
+/// to the end: 0 if it is blocked before or after the pane, else the colours of the panes that it passes. Unbiased over
+/// many rays.
 Spectrum MirroredLight::passing(const SurfacePoint& from, const Point& mirror, const Vec3& onwards,
                                 const RayEnd& end) const {
     // Rays start and end away from the pane, by more than rounding to single precision, so that it does not block them.

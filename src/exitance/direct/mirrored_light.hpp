@@ -49,8 +49,7 @@ class MirroredLight {
     /// A sample of E_m, W/m^2.
     struct Sample {
         Spectrum light;
-        double open =
-            0;  ///< Its light if nothing were in the way and the pane were as large as needed, mean over bands.
+        double open = 0;  ///< Its light if nothing were in the way and the pane were unbounded; mean over bands.
     };
     Sample by_sky(const SurfacePoint& place, Panes& panes, double s, double t, double choice) const;
     Sample by_emitters(const SurfacePoint& place, const Panes& panes, const std::array<double, 4>& random) const;

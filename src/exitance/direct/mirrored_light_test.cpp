@@ -151,6 +151,33 @@ TEST(MirroredLight, AMirroredEmitterIsSeenAtItsImage) {
 
 /// A glazed facade of 20 x 20 m before a black wall, under a uniform sky, with sensors in front of it. The known values
 /// are those of Radiance's rtrace with 65,536 rays.
+TEST(MirroredLight, IsNotMissedWhereFewSamplesFindIt) {
+    // One of 72 panes mirrors a small lamp to a place: the first samples often find nothing.
+    SceneDescription d = court(front(1, 1, 1.52));
+    d.panes.clear();
+    for (int i = 0; i < 12; ++i)
+        for (int k = 0; k < 6; ++k) {
+            Pane pane = front(0.5, 1, 1.52);
+            for (Point& p : pane.corners) p += Vec3{i - 5.5, 0, static_cast<double>(k)};
+            d.panes.push_back(pane);
+        }
+    d.materials.push_back({"lamp", Spectrum(), Spectrum(1e4)});
+    const auto first = static_cast<std::uint32_t>(d.points.size());
+    for (const Point& p : {Point{0.3, 0, 2.2}, {0.3, 0, 2.4}, {0.5, 0, 2.4}, {0.5, 0, 2.2}}) d.points.push_back(p);
+    d.faces.push_back({{first, first + 1, first + 2, first + 3}, 1, 0, 3});
+    const Scene scene = made(std::move(d));
+    const RayTracer tracer(scene);
+    const MirroredLight light(scene, tracer);
+    const SurfacePoint place{{-1.2, 1, 0.1}, {0, 0, 1}, RegionId()};
+    const double exact = mean(light.at(place, 0, {.relative = 0.002, .max_rays = 1 << 17}, 7).irradiance);
+    ASSERT_GT(exact, 0);
+    double sum = 0;
+    constexpr int runs = 256;
+    for (std::uint64_t key = 0; key < runs; ++key)
+        sum += mean(light.at(place, 10 * exact, {.relative = 0.02}, hash(key)).irradiance) / runs;
+    EXPECT_NEAR(sum / exact, 1, 0.03);
+}
+
 TEST(MirroredLight, IsPartOfDirectLightAndOfTheReference) {
     SceneDescription d = court(front(10, 20, 1.52));
     for (std::size_t i = 4; i < 8; ++i) d.points[i].x /= 2;

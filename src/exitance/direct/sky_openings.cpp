@@ -167,10 +167,9 @@ std::vector<PortalCell> SkyOpenings::find_openings(SkySearch& search, std::span<
     return openings;
 }
 
-/// Finds the openings that are hidden from the places of a part of the scene: a ray from every place through the
-/// opening is blocked, and so are all rays to the sky. Of the places' rays to the sky, only those that pass by all
-/// openings remain.
-/// every  only one place in so many looks at 64 of the openings
+/// Returns for each opening whether it is hidden from a part of the scene: none of the rays that the places cast
+/// through it arrives, and none of their rays to the sky passes through it. Removes from `places` the arriving rays
+/// that pass through an opening. every  of so many consecutive places, one casts rays through each group of 64 openings
 std::vector<bool> SkyOpenings::hidden_openings(SkySearch& search, std::span<SearchPlace> places,
                                                std::span<const PortalCell> openings, std::size_t every) const {
     std::vector<SkySearch::Seen> seen(openings.size());

@@ -16,8 +16,8 @@ namespace exitance {
 /// directions in which the sky is seen are bounded by the opening's rim. A rectangle around the rim covers the opening.
 /// The rectangle need not cover the opening completely: unaimed rays find the rest.
 ///
-/// Rays are not aimed at openings that are hidden from a whole part of the scene: neither rays from its places to the
-/// sky nor a ray from every place through the opening arrive.
+/// Rays of a part of the scene are not aimed at an opening if no ray from the part's places has reached the sky through
+/// it.
 ///
 /// The same places give the light that a few rays miss: if the first n rays found nothing, it is the light that the
 /// next n rays find. It is known for parts of the scene with some hundred places each, since a small room in a large
@@ -49,7 +49,7 @@ class SkyOpenings {
     };
     struct ScenePart {
         Hidden sky, sun;
-        std::vector<bool> is_hidden = {};  ///< For every opening.
+        std::vector<bool> is_hidden = {};  ///< Per opening: true if no place of this part sees the sky through it.
     };
     /// A node of the tree that divides the scene: places below `at` along the axis belong to the child `first`, others
     /// to the next one. A leaf has no axis; `first` is then the number of its part.

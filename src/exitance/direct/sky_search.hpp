@@ -12,7 +12,7 @@
 
 namespace exitance {
 
-/// A sun's disc, as seen from every place.
+/// A sun's disc, so far away that its direction is the same from every place.
 struct SunDisc {
     const SeenPolygon* seen;  ///< Polygon of the disc.
     Point from;               ///< Viewpoint of `seen`.

@@ -61,7 +61,7 @@ class ResidualSampler {
 
     /// Measures the residual twice at each place; `samples` has one entry per place. `plans` determines how the direct
     /// light at hits of rays from each room is checked. Returns false if a stop was requested before all places were
-    /// measured. `progress` counts the places. O(places x rays), parallel.
+    /// measured. `part` counts the places. O(places x rays), parallel.
     bool measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans, std::uint64_t seed,
                  std::span<ResidualSample> samples, const StopRequest* stop = nullptr, PhasePart part = {}) const;
 

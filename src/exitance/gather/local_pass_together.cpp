@@ -107,7 +107,7 @@ class RaysTogether {
             sorted_starts_.push_back(starts_[i]), sorted_directions_.push_back(directions_[i]);
         hits_.resize(sorted_starts_.size());
         stage_.tracer.nearest(sorted_starts_, sorted_directions_, hits_, Mirrored::followed);
-        fronts_.clear(), share_.clear();
+        fronts_.clear(), share_.clear(), colours_.clear();
         hidden_.assign(rays_.empty() ? 0 : rays_.back().element + 1, 0);
         for (std::size_t k = 0; k < order.size(); ++k) {
             const RayHit& hit = hits_[k];
@@ -118,9 +118,12 @@ class RaysTogether {
             }
             fronts_.push_back({place_of(stage_.scene, hit, sorted_starts_[k].x, sorted_directions_[k]), hit.region});
             share_.push_back(order[k]);
+            if (!stage_.glass.empty())
+                colours_.push_back(stage_.glass.of(hit, sorted_starts_[k].x, sorted_directions_[k]));
         }
         values_.resize(fronts_.size());
         b_.read(fronts_, values_);
+        for (std::size_t k = 0; k < colours_.size(); ++k) values_[k] *= colours_[k];
     }
 
     /// Tests whether the start of a ray that hit a back is hidden. Does nothing if a hidden start of the element was
@@ -142,6 +145,7 @@ class RaysTogether {
     std::vector<RayHit> hits_;
     std::vector<RayEnd> fronts_;
     std::vector<std::uint32_t> share_;  ///< Entry of `rays_` for each front.
+    std::vector<Spectrum> colours_;     ///< Factors of panes on each front's bands; empty: all are 1.
     std::vector<Spectrum> values_;
     std::vector<std::array<QuarterSums, PooledGather::terms>> sums_;  ///< Per element.
     std::vector<std::uint8_t> hidden_;                                ///< Per element.

@@ -22,7 +22,7 @@ class PathTracer {
     /// A point of a path where light is reflected.
     struct Vertex {
         SurfacePoint at;
-        Spectrum colour;  ///< Factors of panes on the light that comes from here (`GlassColours`).
+        Spectrum colour;  ///< Factors of the panes between this point and the one before (`GlassColours`).
     };
     /// Result of one step of a path at a vertex.
     struct Step {

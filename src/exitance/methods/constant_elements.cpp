@@ -49,7 +49,7 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
 std::vector<double> kept_light(const RayRows& rows, const Stage& stage) {
     std::vector<double> kept = rows.kept();
     const auto is_open = [](double share) { return share < 1; };
-    // Coloured glass keeps another share in every band.
+    // Through coloured glass each band loses a different share: one number per row is not enough.
     const bool differs = stage.scene.has_diffusing_panes() || !stage.glass.empty();
     if (differs && std::any_of(kept.begin(), kept.end(), is_open)) kept.clear();
     return kept;

@@ -17,7 +17,8 @@ namespace exitance {
 void relax_constant_elements(const MethodInput& input, const TransportOperator& F, GlobalLight& light);
 
 /// Returns `GlobalLight::kept` for rows of rays, or nothing if it cannot be determined: rays of a diffusing pane leave
-/// from both sides whereas its own light leaves from one, so they are meaningful only if all light arrives.
+/// from both sides whereas its own light leaves from one, so they are meaningful only if all light arrives. Nor through
+/// coloured glass, which keeps another share of every band.
 std::vector<double> kept_light(const RayRows& rows, const Stage& stage);
 
 }  // namespace exitance

@@ -69,7 +69,7 @@ Spectrum transmissivity_of(const Spectrum& transmittance, double index) {
     Spectrum out;
     for (std::size_t b = 0; b < bands; ++b) {
         const double T = std::max(0.0, transmittance[b]);
-        out[b] = T > 0 ? std::min(1.0, (std::sqrt(q * q + 4 * T * T * r * r) - q) / (2 * T * r * r)) : 0;
+        out[b] = std::min(1.0, 2 * T / (std::sqrt(q * q + 4 * T * T * r * r) + q));
     }
     return out;
 }

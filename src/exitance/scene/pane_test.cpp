@@ -40,6 +40,7 @@ TEST(Pane, RadiancesArgumentIsTheTransmissivity) {
     EXPECT_NEAR(pane.transmission(1)[0], 0.88, 0.002);
     EXPECT_NEAR(transmissivity_of(pane.transmission(1))[0], 0.96, 1e-9);
     EXPECT_EQ(transmissivity_of(Spectrum(1.0))[0], 1);
+    for (const double index : {1.0, 1.0001}) EXPECT_NEAR(transmissivity_of(Spectrum(0.3), index)[0], 0.3, 1e-6);
     EXPECT_EQ(transmissivity_of(Spectrum(0.0))[0], 0);
 }
 

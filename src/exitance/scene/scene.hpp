@@ -181,7 +181,7 @@ class Scene {
     const std::vector<PunctualLight>& lights() const { return lights_; }
     /// Returns the panes of clear glass, split into convex polygons.
     const std::vector<Pane>& panes() const { return panes_; }
-    /// Replaces the transmissivity of pane i by t(pane), in [0, 1] for every band.
+    /// Replaces the transmissivity of every pane by t(pane), which must be in [0, 1] for every band.
     template <class Transmissivity>
     void set_transmissivities(const Transmissivity& t) {
         for (Pane& pane : panes_) pane.transmissivity = t(pane);

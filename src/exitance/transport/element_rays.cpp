@@ -25,8 +25,6 @@ std::size_t ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uin
     met_directions(stage_.scene, region, n, coordinates_[0], coordinates_[1], directions_);
     if (!counts.empty()) aim(tree_.region(e), n, patch.at(tree_.centre(e)), counts);
     stage_.tracer.nearest(origins_, directions_, tree_.region(e), hits_, Mirrored::followed);
-    for (std::size_t k = 0; k < colours.size(); ++k)
-        colours[k] = stage_.glass.of(hits_[k], origins_[k], directions_[k]);
     queries_.clear(), of_ray_.clear();
     std::fill(leaves.begin(), leaves.end(), missed);
     for (std::size_t k = 0; k < count; ++k) {
@@ -37,8 +35,10 @@ std::size_t ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uin
     }
     locator_.leaves().find(queries_);
     for (std::size_t k = 0; k < queries_.size(); ++k) leaves[of_ray_[k]] = queries_[k].leaf;
-    return static_cast<std::size_t>(
-        std::count_if(hits_.begin(), hits_.end(), [](const RayHit& hit) { return hit.surface.is_none(); }));
+    if (!colours.empty())
+        for (const std::size_t k : of_ray_) colours[k] = stage_.glass.of(hits_[k], origins_[k], directions_[k]);
+    return static_cast<std::size_t>(std::count_if(
+        hits_.begin(), hits_.end(), [](const RayHit& hit) { return hit.surface.is_none() || hit.is_glass; }));
 }
 
 /// Aims the second half of the rays at openings if that reduces the noise at `centre`, and sets the rays' weights.

@@ -27,7 +27,7 @@ class ElementRays {
     /// points of sequence `key` from number `first` on. If `counts` is given (one number per ray), half of the rays are
     /// aimed at openings where that reduces the noise (`PortalAim`), and counts[k] becomes the weight of ray k. If
     /// `colours` is given, colours[k] becomes the colour that panes give to ray k (`GlassColours`). Returns the number
-    /// of rays that hit nothing at all, neither fronts nor backs.
+    /// of rays that hit neither fronts nor backs, those that a pane stopped included.
     std::size_t cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0,
                      Leave leave = Leave::front, std::span<float> counts = {}, std::span<Spectrum> colours = {});
 

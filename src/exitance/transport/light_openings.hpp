@@ -17,7 +17,7 @@ struct Flow {
     std::vector<double> start;  ///< Starting values of find_opening()'s iteration: a guess that differs between rooms.
     std::vector<std::uint16_t> part;    ///< The part of the scene that each leaf belongs to so far.
     std::vector<std::uint32_t> to_sky;  ///< Rays of each leaf that reach the sky, which connects leaves like a wall.
-    std::vector<std::uint32_t> lost;    ///< Rays of each leaf that leave the scene, where nothing else shines.
+    std::vector<std::uint32_t> lost;    ///< Without a sky: rays of each leaf that hit no front; 0 if none does.
 };
 
 /// Share of a leaf's rays that reach the sky.

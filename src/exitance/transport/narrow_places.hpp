@@ -26,7 +26,7 @@ bool is_narrow_leaf(const Stage& stage, const ElementTree& tree, ElementId e);
 ///
 /// Between parallel planes at the distance d, a wave of length h keeps the share x K1(x) of its contrast, x = 2 pi d/h:
 /// the Fourier transform of the kernel d^2 / (pi (r^2 + d^2)^2). The lengths of the rays take the place of d, which is
-/// a guess: surfaces need not be parallel. `progress` counts the leaves.
+/// a guess: surfaces need not be parallel. `part` counts the leaves.
 std::vector<float> unsmoothed_shares(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                                      const StopRequest& stop, PhasePart part = {});
 

@@ -278,7 +278,7 @@ class RoomFinder {
     std::uint16_t fresh_ = 1;           ///< Number of the next part.
 };
 
-/// For every leaf, 1 if all its rays hit backs, or nothing if there is no sky.
+/// For every leaf, 1 if none of its rays hits a front or reaches a sky.
 std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
     std::vector<std::uint8_t> out(numbering_.leaves.size());
     for (std::uint32_t i = 0; i < out.size(); ++i) {

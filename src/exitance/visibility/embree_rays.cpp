@@ -155,7 +155,7 @@ struct RayTracer::Content : TracedScene {
         if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return true;
         if (packet.hit.geomID[lane] != 0) {  // stopped by glass: treated like the back of any surface
             hit.surface = SurfaceId(0), hit.region = faces[hit.surface].region;
-            hit.distance = packet.ray.tfar[lane];
+            hit.distance = packet.ray.tfar[lane], hit.is_glass = true;
             return true;
         }
         hit.surface = surface_of[packet.hit.primID[lane]];

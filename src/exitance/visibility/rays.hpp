@@ -16,6 +16,7 @@ struct RayHit {
     /// Distance in units of the length of the ray's direction.
     double distance = std::numeric_limits<double>::infinity();
     bool front = false;        ///< True if the front of the surface is hit.
+    bool is_glass = false;     ///< True if a pane stopped the ray; it counts as the back of some surface.
     std::int32_t mirror = -1;  ///< Index of the pane that reflected the ray before the hit; negative if none.
 };
 

@@ -122,7 +122,8 @@ class Prober {
             if (hit.surface.is_none()) continue;
             backs += !hit.front;
             if (hit.front)
-                radiance_[k] = reflected(hit.region, place_of(light_.stage().scene, hit, x, directions_[k])) / pi;
+                radiance_[k] = light_.stage().glass.of(hit, x, directions_[k]) *
+                               reflected(hit.region, place_of(light_.stage().scene, hit, x, directions_[k])) / pi;
         }
         out.back_share = static_cast<double>(backs) / rays_;
         fit(out);

@@ -63,7 +63,9 @@ void conserve(Hierarchy& h) {
 GlobalLight solve_over_links(const MethodInput& input, HierarchyBasis kind) {
     if (!asks_for_judged_links(input.options)) {
         const bool is_polynomial = kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
-        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, is_polynomial)) return std::move(*light);
+        // Judged links have no colours, and coloured glass needs them.
+        const bool may_be_judged = is_polynomial && input.stage.glass.empty();
+        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, may_be_judged)) return std::move(*light);
     }
     Hierarchy h(input, kind, held_by(input, kind));
     if (wants_clusters(input)) h.make_clusters();

@@ -63,6 +63,11 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     light.kept = kept_light(rows, stage);
     reflect_again(rows, stage.scene, light);
 
+    if (!stage.glass.empty()) {  // links have no colours
+        relax_constant_elements(input, rows, light);
+        light.work.element_memory_bytes = light.tree.memory_bytes();
+        return light;
+    }
     const NodalBasis constants(HierarchyBasis::haar);
     const LinkSites sites(stage, light.tree, constants);
     NodalField b(sites);

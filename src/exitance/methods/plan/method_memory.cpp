@@ -24,6 +24,7 @@ double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs
     if (const auto own = entry_of(options.method, form_of(options)).forecast)
         return own(stage, options, knobs, 1, true).bytes;
     const double pairs = leaves * leaves;
+    const double bytes_a_ray = sizeof(float) + (stage.glass.empty() ? 0 : sizeof(Spectrum));
     switch (options.method) {
         case Method::progressive:
         case Method::substructuring:
@@ -31,7 +32,7 @@ double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs
         case Method::matrix:
             break;
         default:
-            return sizeof(float) * leaves * knobs.solve_rays.average;
+            return bytes_a_ray * leaves * knobs.solve_rays.average;
     }
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis)) return bytes_a_galerkin_pair * pairs;
     switch (options.form_factors.value_or(FormFactorKind::ray_cast)) {
@@ -40,7 +41,7 @@ double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs
         case FormFactorKind::hemicube:
             return (sizeof(float) + sizeof(std::uint32_t)) * pairs;
         default:
-            return sizeof(float) * leaves * knobs.solve_rays.average;
+            return bytes_a_ray * leaves * knobs.solve_rays.average;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "exitance/base/bvh.hpp"
 #include "exitance/scene/scene.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -10,7 +11,7 @@ namespace exitance {
 
 /// Colours that panes of clear glass give to rays. A ray passes a pane, or is mirrored by it, at random, in proportion
 /// to the mean over the bands (`RayFates`). Its bands are right in the mean if they are multiplied by T / mean(T) for
-/// each pane that it has passed, T the transmission, and likewise for the pane that has mirrored it. O(coloured panes).
+/// each pane that it has passed, T the transmission, and likewise for the pane that has mirrored it. O(log panes).
 class GlassColours {
   public:
     explicit GlassColours(const Scene& scene);
@@ -28,6 +29,7 @@ class GlassColours {
 
     const Scene* scene_;
     std::vector<std::int32_t> panes_;  ///< Indices of the panes whose transmission differs between bands.
+    Bvh tree_;                         ///< Over these panes.
 };
 
 }  // namespace exitance

@@ -44,7 +44,7 @@ TEST(GlassColours, BandsOfRaysAreRightInTheMean) {
         tracer.nearest(directions, x, RegionId(), hits, Mirrored::followed);
         Spectrum through, back;
         for (std::size_t i = 0; i < rays; ++i) {
-            if (hits[i].surface.is_none()) continue;
+            if (!hits[i].front) continue;
             (hits[i].mirror < 0 ? through : back) += colours.of(hits[i], x, directions[i]) / static_cast<double>(rays);
         }
         const double noise = 4 / std::sqrt(static_cast<double>(rays));
@@ -52,6 +52,32 @@ TEST(GlassColours, BandsOfRaysAreRightInTheMean) {
             EXPECT_NEAR(through[b], scene.panes()[0].transmission(cosine)[b], noise) << cosine << ", " << b;
             EXPECT_NEAR(back[b], scene.panes()[0].reflection(cosine)[b], noise) << cosine << ", " << b;
         }
+    }
+}
+
+TEST(GlassColours, ARayIsColouredBeforeAndAfterItIsMirrored) {
+    SceneDescription d;
+    d.file = "glass.obj";
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    d.points = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 0}};
+    Spectrum tint(0.2);
+    tint[0] = 0.9;
+    Pane upright, mirror;
+    upright.corners = {{1, -9, 0}, {1, 9, 0}, {1, 9, 9}, {1, -9, 9}}, upright.transmissivity = tint;
+    mirror.corners = {{-9, -9, 5}, {9, -9, 5}, {9, 9, 5}, {-9, 9, 5}}, mirror.transmissivity = Spectrum(0.5);
+    d.panes = {upright, mirror};
+    const CheckedScene checked = make_scene(std::move(d));
+    ASSERT_TRUE(static_cast<bool>(checked.scene));
+    const Scene& scene = *checked.scene;
+    RayHit hit;  // from (0, 0, 1) up to the mirror at (x, 0, 5), and down to the floor
+    hit.surface = SurfaceId(0), hit.region = scene.surfaces()[SurfaceId(0)].region, hit.front = true, hit.mirror = 1;
+    hit.distance = 9;
+    for (const double slope : {0.2, 0.5}) {  // crosses x = 1 after the mirror, or before
+        const Spectrum found = GlassColours(scene).of(hit, {0, 0, 1}, {slope, 0, 1});
+        const Spectrum T = scene.panes()[0].transmission(slope / std::sqrt(1 + slope * slope));
+        for (std::size_t b = 0; b < bands; ++b) EXPECT_NEAR(found[b], T[b] / mean(T), 1e-12) << slope << ", " << b;
     }
 }
 
@@ -67,7 +93,9 @@ TEST(GlassColours, GreyPanesGiveNone) {
     d.panes = {pane};
     const CheckedScene checked = make_scene(std::move(d));
     ASSERT_TRUE(static_cast<bool>(checked.scene));
-    EXPECT_TRUE(GlassColours(*checked.scene).empty());
+    const GlassColours colours(*checked.scene);
+    EXPECT_TRUE(colours.empty());
+    EXPECT_EQ(colours.between({0.5, 0.2, 0}, {0.5, 0.2, 2})[0], 1);
 }
 
 }  // namespace

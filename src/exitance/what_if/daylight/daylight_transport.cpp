@@ -26,7 +26,8 @@ Scene under_patches(Scene scene) {
     below.below = true;
     light.domes = {{uniform_sky(), Spectrum(pi)}, {below, Spectrum(pi)}};
     scene.put_under(std::move(light));
-    // Light is luminous here, one number for all bands: rays must pass coloured glass in proportion to that number.
+    // This transport carries luminous light, one number instead of bands: rays must pass glass with its luminous
+    // transmittance.
     scene.set_transmissivities([](const Pane& pane) {
         return is_grey(pane.transmissivity)
                    ? pane.transmissivity
