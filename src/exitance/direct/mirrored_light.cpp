@@ -100,7 +100,8 @@ struct MirroredLight::Sums {
         const double middle = mean(total()) / 4;
         double squares = 0;
         for (const Spectrum& q : quarter) squares += std::pow(mean(q) - middle, 2);
-        // If no sample found light, all may have missed it: half of the light of one open sample, as for rays (RayLight).
+        // If no sample found light, all may have missed it: half of the light of one open sample, as for rays
+        // (RayLight).
         const double missed = middle > 0 ? 0 : 0.5 * open / samples;
         return (4.0 / 3 * squares + missed * missed) / (samples * samples);
     }
