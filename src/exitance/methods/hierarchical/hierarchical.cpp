@@ -57,19 +57,18 @@ void conserve(Hierarchy& h) {
 ///
 /// If light is gathered from the elements afterwards, rays find the links (`solve_linked_by_rays`). Links are judged
 /// one by one (`refine_links`) if the basis has polynomials and most light is unoccluded, or if options about links are
-/// set. E_ind of polynomials is then delivered as computed by the links; otherwise rays correct the means. O(rays log
-/// rays), or O(k log k + links) for k pieces with clusters, O(k^2 + links) without. Source: [Hanrahan91], [Gortler93],
-/// [Smits94].
+/// set. E_ind of polynomials is then delivered as computed by the links; otherwise, and where glass is coloured, rays
+/// correct the means. O(rays log rays), or O(k log k + links) for k pieces with clusters, O(k^2 + links) without.
+/// Source: [Hanrahan91], [Gortler93], [Smits94].
 GlobalLight solve_over_links(const MethodInput& input, HierarchyBasis kind) {
     if (!asks_for_judged_links(input.options)) {
         const bool is_polynomial = kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
-        // Judged links have no colours, and coloured glass needs them.
-        const bool may_be_judged = is_polynomial && input.stage.glass.empty();
-        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, may_be_judged)) return std::move(*light);
+        if (std::optional<GlobalLight> light = solve_linked_by_rays(input, is_polynomial)) return std::move(*light);
     }
     Hierarchy h(input, kind, held_by(input, kind));
     if (wants_clusters(input)) h.make_clusters();
-    if (links_deliver(h)) h.light.delivery = MethodDelivery::polynomials;
+    // Links have no colours: where glass is coloured, rays correct their light.
+    if (links_deliver(h) && input.stage.glass.empty()) h.light.delivery = MethodDelivery::polynomials;
     h.project_direct();
     if (!refine_links(h)) return std::move(h.light);
     if (h.light.delivers())
