@@ -8,11 +8,10 @@
 #include "exitance/base/loop_progress.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/error_budget.hpp"
-#include "exitance/error/batch_mean.hpp"
 #include "exitance/error/body_errors.hpp"
 #include "exitance/error/coarse_response.hpp"
+#include "exitance/error/error_factors.hpp"
 #include "exitance/error/error_tail.hpp"
-#include "exitance/error/late_paths.hpp"
 #include "exitance/error/surface_errors.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/transport/narrow_places.hpp"
@@ -97,6 +96,7 @@ struct Certifier::Content {
     void measure_p99(Certificate& out);
     void measure_each_body(Certificate& out);
     std::vector<BodyAtPoints> bodies_at_points() const;
+    ErrorFactors raise_by_paths(const LatePaths& by_paths, Certificate& out);
     void check_by_paths(Certificate& out);
     double true_mean(double mean_error) const;
     bool is_rough(const ResidualSample& s, double weight, const SampleSums& all, double light) const;
@@ -104,8 +104,9 @@ struct Certifier::Content {
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<RoomError> rooms;
-    std::vector<BodyError> bodies;        ///< Sorted by descending area.
-    std::vector<PointError> body_points;  ///< Points of the bodies that were measured at further points.
+    std::vector<BodyError> bodies;          ///< Sorted by descending area.
+    std::vector<double> factors_of_bodies;  ///< Factors on the errors of bodies, by paths; empty: not measured.
+    std::vector<PointError> body_points;    ///< Points of the bodies that were measured at further points.
 };
 
 /// Chooses the parameters for checking hits of rays from a room, from a pilot at some of its places.
@@ -289,22 +290,50 @@ void Certifier::Content::measure_each_body(Certificate& out) {
         MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
         bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
         out.hidden = found.hidden;
+        for (std::size_t body = 0; body < factors_of_bodies.size(); ++body)
+            if (bodies[body].error) *bodies[body].error *= factors_of_bodies[body];
     }
     for (const BodyError& body : bodies)
         if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
+}
+
+/// Multiplies the errors of the whole, of rooms and of bodies by the factors that paths find, where light is reflected
+/// between near surfaces. Returns these factors.
+ErrorFactors Certifier::Content::raise_by_paths(const LatePaths& by_paths, Certificate& out) {
+    ErrorParted parts;
+    for (std::size_t room = 0; room < rooms.size(); ++room) parts.light_of_room.push_back(rooms[room].reference);
+    if (options.bodies && options.bodies->all.size() > 1) {
+        parts.bodies = options.bodies->all.size();
+        for (const ResidualSample& s : samples)
+            parts.body_of.push_back(static_cast<std::uint32_t>(options.bodies->of(stage.scene, s.region)));
+    }
+    ErrorFactors found = measure_error_factors(by_paths, samples, late, parts, options.seed, options.check_rays / 2);
+    out.rays += found.rays;
+    out.again = found.whole, out.estimate *= found.whole, out.uncertainty *= found.whole;
+    out.bound = std::max(out.bound, out.estimate);
+    for (std::size_t room = 0; room < rooms.size(); ++room) rooms[room].error *= found.rooms[room];
+    factors_of_bodies = found.bodies;
+    return found;
 }
 
 /// Adds the error that arrives by further reflections and that the coarse response misses, if traced paths find it
 /// significant.
 void Certifier::Content::check_by_paths(Certificate& out) {
     if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
-    const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);
+    const LatePaths by_paths(stage, indirect, b, check, plans, options.direct_in_elements, options.stop);
+    const ErrorFactors factors = raise_by_paths(by_paths, out);
     const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
     out.rays += misfit.rays;
-    if (!misfit.is_significant()) return;
-    const double more = std::sqrt(misfit.mean_square) / out.mean_reflected;
-    out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
-    if (stage.rooms.count() == 0) out.worst_room = rooms[0].error = out.estimate;
+    if (misfit.is_significant()) {
+        const double more = std::sqrt(std::max(0.0, misfit.mean_square - factors.explained)) / out.mean_reflected;
+        out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
+    }
+    if (stage.rooms.count() == 0) rooms[0].error = out.estimate;
+    const auto worst = std::max_element(rooms.begin(), rooms.end(),
+                                        [](const RoomError& x, const RoomError& y) { return x.error < y.error; });
+    out.worst_room = worst->error;
+    if (stage.rooms.count() == 0 || out.worst_room <= out.estimate) return;
+    out.largest_room = static_cast<std::size_t>(worst - rooms.begin()), out.largest_light = worst->reference;
 }
 
 void Certifier::Content::measure_p99(Certificate& out) {
@@ -347,7 +376,7 @@ void Certifier::Content::measure_p99(Certificate& out) {
             [&](std::size_t k) -> TwoErrors& { return error[k]; }, {"certificate"});
     };
     const double found = error_below(points, rays, mean_square, share, by_more_rays);
-    if (found > 0) out.p99 = found / mean_reflected;
+    if (found > 0) out.p99 = out.again * found / mean_reflected;
 }
 
 Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,

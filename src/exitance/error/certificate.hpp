@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/error/batch_mean.hpp"
 #include "exitance/error/direct_check.hpp"
 #include "exitance/error/hidden_errors.hpp"
 #include "exitance/gather/local_pass.hpp"
@@ -82,6 +83,8 @@ struct Certificate {
     /// Part of `local` at single points at which the error is a notable share of the allowed error, and these points.
     double rough = 0;
     std::vector<RoughPlace> rough_places = {};
+    /// Factor by which light that near surfaces reflect to each other raised `estimate`; 1 until `check_by_paths`.
+    double again = 1;
     double constant = 1;        ///< Ratio of the error bound to ||r||.
     double mean_reflected = 0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2; errors are relative to it.
     std::size_t points = 0, rays = 0;
@@ -99,6 +102,8 @@ struct Certificate {
     }
     /// Returns the larger of the errors of the whole scene and of the worst room.
     double largest() const { return std::max(estimate, worst_room); }
+    /// Returns the upper confidence limit of the estimate: one-sided, at 95%.
+    double upper_limit() const { return estimate + student_95 * uncertainty; }
     double largest_uncertainty() const { return estimate < worst_room ? room_uncertainty : uncertainty; }
 };
 

@@ -21,7 +21,8 @@ TEST(FurtherMeasurements, GrowWithTheUncertaintyOfAnErrorAboveTheLimit) {
 }
 
 TEST(FurtherMeasurements, AreNeededBelowTheLimitIfAFewPointsHaveMostOfTheError) {
-    EXPECT_EQ(further_measurements({0.0160, 0.003}, 0.0164, 0.02), 0u) << "a standard error below the requested one";
+    EXPECT_EQ(further_measurements({0.0160, 0.0023}, 0.0164, 0.02), 0u) << "1.7 standard errors below the demand";
+    EXPECT_EQ(further_measurements({0.0160, 0.003}, 0.0164, 0.02), 2u);
     EXPECT_EQ(further_measurements({0.0160, 0.005}, 0.0164, 0.02), 3u);
 }
 

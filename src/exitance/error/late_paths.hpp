@@ -17,24 +17,38 @@ struct LateMisfit {
     bool is_significant() const { return mean_square > 2 * standard_error; }
 };
 
+/// The part of one path in the mean of 2 (r + late) m over all surfaces. m is the light that paths find, less the
+/// coarse response.
+struct CorrelationTerm {
+    std::uint32_t sample = 0;  ///< Number of the sample at which the path ends.
+    double value = 0;          ///< Term of the weighted sum over the samples, mean over bands, (W/m^2)^2.
+};
+
 /// Estimates by paths the part rho H e of the error e = r + rho H e, which arrives by way of other surfaces. A path
-/// starts with one ray of a gather and ends with probability 1 - rho at each vertex. At each vertex y it samples the
-/// residual
+/// starts with one ray and ends with probability 1 - rho at each vertex. At each vertex y, a gather of a few rays
+/// measures the residual
 ///
-///     E_ind(z), read at the hit z of the next ray, with the direct light at z checked, minus E_ind(y).
+///     E(y), the mean of the delivered light at the hits, with the direct light there checked, minus E_ind(y).
 ///
 /// The delivered light is the control variate of the light that the path would find. No fitted or averaged residuals
 /// are used.
 class LatePaths {
   public:
-    /// `b` and `indirect` are the delivered function. `holds_direct`: `indirect` includes the emitters' light. All
-    /// arguments must outlive the object.
+    /// `b` and `indirect` are the delivered function. `holds_direct`: `indirect` includes the emitters' light. `plans`:
+    /// how the hits of rays from each room are checked. `stop`: ends the measurements, which then find nothing; null:
+    /// never. All arguments must outlive the object.
     LatePaths(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b, const DirectCheck& check,
-              bool holds_direct);
+              std::span<const CheckPlan> plans, bool holds_direct, const StopRequest* stop = nullptr);
+
+    struct Workspace {
+        GatherWorkspace rays;
+        DirectCheck::Workspace check;
+    };
 
     /// Returns one sample of (H e)(x), W/m^2, and adds the rays cast to `rays`. `a`, `b`: random numbers in [0, 1) for
     /// the direction of the first ray.
-    Spectrum sample(const SurfacePoint& x, double a, double b, RandomStream& random, std::size_t& rays) const;
+    Spectrum sample(const SurfacePoint& x, double a, double b, RandomStream& random, Workspace& w,
+                    std::size_t& rays) const;
 
     /// Compares `late` (one entry per leaf of the coarse mesh) with two independent sets of paths at some of the
     /// samples. Casts about `max_rays` rays. In one of forty cases noise alone is reported as a misfit. A significant
@@ -42,17 +56,30 @@ class LatePaths {
     LateMisfit misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late, std::uint64_t seed,
                       std::size_t max_rays) const;
 
+    /// Measures how the light of paths that the coarse response lacks follows the error at the same place. Between the
+    /// slats of a blind, a wrong light is reflected back to where it came from, so that both have the same sign. Few
+    /// paths resolve this product, since it is linear in their noise, while the square that `misfit` measures is not.
+    /// Places receive paths in proportion to their error and light, and to `counted`, which has one entry per sample.
+    /// Casts about `max_rays` rays, which are added to `rays`. The sum of all terms is unbiased.
+    std::vector<CorrelationTerm> correlation(std::span<const ResidualSample> samples, std::span<const double> counted,
+                                             std::span<const Spectrum> late, std::uint64_t seed, std::size_t max_rays,
+                                             std::size_t& rays) const;
+
   private:
+    Spectrum residual(const SurfacePoint& y, RandomStream& random, Workspace& w, std::size_t& rays) const;
+    double rays_per_path() const;
+    bool is_stopped() const { return stop_ && stop_->requested(); }
     /// Measures the misfit with two sets of `paths` paths at each place.
     LateMisfit measure(std::span<const ResidualSample> samples, std::span<const Spectrum> late, std::uint64_t seed,
                        std::uint32_t paths) const;
-    Spectrum read(const ReflectedLight& light, const SurfacePoint& y) const;
 
     const Stage& stage_;
     const ElementFunction& indirect_;
     const ReflectedLight& b_;
     const DirectCheck& check_;
+    std::span<const CheckPlan> plans_;
     bool holds_direct_;
+    const StopRequest* stop_;
     ElementLocator locator_;
 };
 

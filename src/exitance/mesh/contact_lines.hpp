@@ -29,15 +29,19 @@ class ContactLines {
         double height;
         /// For a line between strips of a gap: how far all strips together extend into the gap, metres.
         double gap_depth = 0;
+        double from_mouth = 0;  ///< For such a line: its distance from the mouth, metres.
+        Vec3 inwards = {};      ///< For such a line: unit vector from the mouth into the gap.
+        bool is_strip() const { return gap_depth > 0; }
     };
     /// Lines that may cross an element's domain, caused by faces of other regions: edges in its plane; edges at a small
     /// height above it, each with one more line on either side; intersections with faces; and in gaps, where light
-    /// falls off from the mouth, up to three lines parallel to the mouth. The limits for small heights and for gaps
-    /// depend on the element's width across the line and on `area`.
+    /// falls off from the mouth, up to three lines parallel to the mouth. These come last: those of short mouths first,
+    /// and those far from a mouth first. The limits for small heights and for gaps depend on the element's width across
+    /// the line and on `area`.
     /// area  of the element before contacts split it, m^2, so that its parts share its lines
     std::vector<Line> around(const ElementTree& tree, ElementId e, double area) const;
-    /// Removes from `lines` those that do not meet the element's domain. Returns the parts of the others inside the
-    /// domain, as pairs of points in the element's coordinates.
+    /// Removes from `lines` those that do not cross the element's domain. Returns the part inside the domain of each of
+    /// the others, as a pair of points in the element's coordinates.
     std::vector<std::pair<Vec2, Vec2>> inside(const ElementTree& tree, ElementId e, std::vector<Line>& lines) const;
 
     /// All contact lines in the plane of a whole region inside the region's box, including those along its border.

@@ -27,16 +27,12 @@ struct Mouth {
         : p(from), q(to), along(normalized(to - from)), inwards(cross(n, along)) {}
 };
 
-/// Extent of a region from a mouth inwards, or along the mouth if that is less; metres.
+/// Extent of a region from a mouth inwards, metres.
 double width_at(const Mouth& mouth, const Region& region) {
-    double inwards = 0, least = HUGE_VAL, most = -HUGE_VAL;
+    double inwards = 0;
     for (const std::vector<Point>& loop : region.loops)
-        for (const Point& corner : loop) {
-            const double at = dot(mouth.along, corner - mouth.p);
-            inwards = std::max(inwards, dot(mouth.inwards, corner - mouth.p));
-            least = std::min(least, at), most = std::max(most, at);
-        }
-    return std::min(inwards, most - least);
+        for (const Point& corner : loop) inwards = std::max(inwards, dot(mouth.inwards, corner - mouth.p));
+    return inwards;
 }
 
 /// Positions along a mouth at which the opposite surface is searched: the middles of its thirds.
@@ -130,7 +126,7 @@ class GapFinder {
             if (0.5 * width - at < strip) break;
             depth = at;
             const Vec3 across = at * mouth.inwards;
-            out_.push_back({foot(mouth.p + across), foot(mouth.q + across), height, 0, on});
+            out_.push_back({foot(mouth.p + across), foot(mouth.q + across), height, 0, at, mouth.inwards, on});
         }
         for (std::size_t i = first; i < out_.size(); ++i) out_[i].depth = depth;
     }

@@ -9,10 +9,12 @@ namespace exitance {
 
 /// A line between two strips of a surface on one side of a gap, parallel to the gap's mouth.
 struct GapLine {
-    Point a, b;       ///< End points, in the plane of the region.
-    double height;    ///< Distance between the sides of the gap, metres.
-    double depth;     ///< How far all strips together extend into the gap, metres.
-    RegionId region;  ///< Region of the surface.
+    Point a, b;         ///< End points, in the plane of the region.
+    double height;      ///< Distance between the sides of the gap, metres.
+    double depth;       ///< How far all strips together extend into the gap, metres.
+    double from_mouth;  ///< Distance of the line from the mouth, metres.
+    Vec3 inwards;       ///< Unit vector from the mouth into the gap.
+    RegionId region;    ///< Region of the surface.
 };
 
 /// Finds the narrow gaps between regions that face each other at a small distance, and the lines that divide both sides

@@ -81,9 +81,10 @@ void archive(Archive& a, LocalPassReport& report) {
 
 template <class Archive>
 void archive(Archive& a, Certificate& certificate) {
-    auto& [estimate, uncertainty, bound, p99, residual, local, method, rough, rough_places, constant, mean_reflected,
-           points, rays, worst_room, room_uncertainty, largest_room, largest_light, worst_body, hidden] = certificate;
-    a(estimate, uncertainty, bound, p99, residual, local, method, rough, rough_places, constant, mean_reflected);
+    auto& [estimate, uncertainty, bound, p99, residual, local, method, rough, rough_places, again, constant,
+           mean_reflected, points, rays, worst_room, room_uncertainty, largest_room, largest_light, worst_body,
+           hidden] = certificate;
+    a(estimate, uncertainty, bound, p99, residual, local, method, rough, rough_places, again, constant, mean_reflected);
     a(points, rays, worst_room, room_uncertainty, largest_room, largest_light, worst_body);
     a(hidden.bodies, hidden.first, hidden.at_most);
 }

@@ -179,7 +179,8 @@ std::uint64_t StandardSolver::certificate_seed() const {
 
 /// Returns the parts of the error where it is largest. If their sum exceeds the whole error, they cancel in part, as
 /// after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the rays' noise
-/// counts as noise, since a smaller tolerance would not split any elements. Error at rough places counts as neither:
+/// counts as noise, since a smaller tolerance would not split any elements. Where near surfaces reflect errors to each
+/// other, the parts are scaled up to the whole. Error at rough places counts as neither:
 /// the local pass refines these in any case.
 ErrorParts StandardSolver::error_parts() const {
     if (!gathers()) return {.method = certificate_.largest()};
@@ -187,11 +188,11 @@ ErrorParts StandardSolver::error_parts() const {
     const LocalPassReport::Parts told =
         room && *room < gathered_.rooms.size() ? gathered_.rooms[*room] : gathered_.whole;
     const double parts = std::hypot(certificate_.local, certificate_.method), all = certificate_.largest();
-    const double cancels = parts > all ? all / parts : 1;
+    const double cancels = parts > all ? all / parts : certificate_.again;
     const double spread = std::sqrt(std::max(0.0, std::pow(certificate_.local, 2) - std::pow(certificate_.rough, 2)));
-    const double local = cancels * spread, noise = told.noise / certificate_.largest_light;
+    const double local = cancels * spread, noise = certificate_.again * told.noise / certificate_.largest_light;
     const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
-    const double seen = told.interpolation / certificate_.largest_light;
+    const double seen = certificate_.again * told.interpolation / certificate_.largest_light;
     // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
     constexpr double min_hidden_ratio = 3;
     return {.method = cancels * certificate_.method,
@@ -261,7 +262,7 @@ std::optional<StandardSolver::NextAttempt> StandardSolver::next_in_time(double d
 
 StandardSolver::NextAttempt StandardSolver::next_attempt(double demand) const {
     const double target = ErrorBudget(demand).next_attempt();
-    const double all = certificate_.largest(), rough = certificate_.rough;
+    const double all = judged_error(), rough = certificate_.rough;
     if (all * all - rough * rough <= target * target) return {.finer = {.knobs = knobs_}};
     const ErrorParts parts = error_parts();
     NextAttempt out{.finer = tightened(knobs_, parts, target, options_)};

@@ -22,6 +22,10 @@ double Solver::margin(std::size_t points) {
     return 1 - calibrated::estimate_margin * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
 }
 
+double Solver::judged_error() const {
+    return std::max(certificate_.largest(), margin(certificate_.points) * certificate_.upper_limit());
+}
+
 void Solver::certify(CertificateOptions options, std::optional<double> demand,
                      std::span<const ElementGather> gathered) {
     options.direct_in_elements = light_->holds_direct();
@@ -66,8 +70,8 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
         certificate_ = certifier.measure(left - 1);
     const double noise = direct_light_noise_share();
     certificate_.add_independent_error(noise);
+    if (!demand || may_be_last(*demand)) certifier.check_by_paths(certificate_);
     if (!demand || may_be_last(*demand)) {
-        certifier.check_by_paths(certificate_);
         certifier.measure_each_body(certificate_);
         certifier.measure_p99(certificate_);
     }

@@ -80,7 +80,11 @@ class Solver {
     /// `gathered`: the gathered light as element gathers, if light is summed.
     void certify(CertificateOptions options, std::optional<double> demand = {},
                  std::span<const ElementGather> gathered = {});
-    bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
+    /// Returns the error to compare with the demand times `margin`: the largest estimate. If a few points have most of
+    /// the error, so that the estimate is more uncertain than `margin` accounts for, it is raised such that its upper
+    /// confidence limit is compared with the demand.
+    double judged_error() const;
+    bool has_reached(double demand) const { return judged_error() <= margin(certificate_.points) * demand; }
     /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
     /// Warns of the worst room if the solve ended although the error of a room was larger than requested.
