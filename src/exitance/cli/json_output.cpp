@@ -43,6 +43,7 @@ std::string forecast_json(const Forecast& f) {
         {"rays", f.rays},
         {"seconds", f.seconds},
         {"memory_bytes", f.memory_bytes},
+        {"at_least", f.is_at_least},
     };
     return dump(json, 2);
 }

@@ -120,14 +120,15 @@ std::string summary(const Solution& solution) {
 }
 
 std::string summary(const Forecast& f) {
+    const char* const about = f.is_at_least ? "at least" : "about";
     return fmt::format(
-        "surfaces   {} ({} after joining coplanar neighbours), {} emitters\n"
-        "method     {}\n"
-        "elements   about {} to solve on, {} to gather on\n"
-        "rays       about {:.2g}\n"
-        "time       about {:.2g} s\n"
-        "memory     about {}\n",
-        f.surfaces, f.regions, f.emitters, f.method, f.solve_elements, f.gather_elements, f.rays, f.seconds,
+        "surfaces   {1} ({2} after joining coplanar neighbours), {3} emitters\n"
+        "method     {4}\n"
+        "elements   {0} {5} to solve on, {6} to gather on\n"
+        "rays       {0} {7:.2g}\n"
+        "time       {0} {8:.2g} s\n"
+        "memory     {0} {9}\n",
+        about, f.surfaces, f.regions, f.emitters, f.method, f.solve_elements, f.gather_elements, f.rays, f.seconds,
         bytes(static_cast<std::size_t>(f.memory_bytes)));
 }
 

@@ -5,7 +5,6 @@
 
 #include "exitance/base/random.hpp"
 #include "exitance/direct/ray_light.hpp"
-#include "exitance/visibility/glazed_part.hpp"
 #include "exitance/visibility/window_view.hpp"
 
 namespace exitance {
@@ -184,9 +183,7 @@ void RayLight::continue_through_windows(Workspace& room) const {
     for (std::size_t k = 0; k < room.onwards_.size(); ++k) {
         Workspace::Ray& ray = room.rays_[room.onwards_[k]];
         room.blocked_[room.onwards_[k]] = hidden[k];
-        if (!glass_.empty() && !hidden[k])
-            ray.weight *=
-                colour_between(direct_->occluders().enclosure().others, room.onwards_from_[k].x, room.onwards_to_[k].x);
+        if (!glass_.empty() && !hidden[k]) ray.weight *= glass_.between(room.onwards_from_[k].x, room.onwards_to_[k].x);
     }
 }
 

@@ -276,32 +276,11 @@ bool crosses(const Pane& pane, const Point& x, const Point& y) {
     return !(left && right);
 }
 
-namespace {
-
-/// Calls visit(T) with the transmission of each pane between two points.
-template <class Visit>
-void visit_crossed(std::span<const Pane> panes, const Point& x, const Point& y, const Visit& visit) {
-    const Vec3 d = y - x;
-    for (const Pane& pane : panes)
-        if (crosses(pane, x, y)) {
-            const double here = dot(pane.n, x - pane.corners[0]), there = dot(pane.n, y - pane.corners[0]);
-            visit(pane.transmission(std::abs(here - there) / norm(d)));
-        }
-}
-
-}  // namespace
-
 Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y) {
     Spectrum out(1.0);
-    visit_crossed(panes, x, y, [&](const Spectrum& T) { out *= T; });
-    return out;
-}
-
-Spectrum colour_between(std::span<const Pane> panes, const Point& x, const Point& y) {
-    Spectrum out(1.0);
-    visit_crossed(panes, x, y, [&](const Spectrum& T) {
-        if (const double passing = mean(T); passing > 0) out *= T / passing;
-    });
+    const Vec3 d = y - x;
+    for (const Pane& pane : panes)
+        if (crosses(pane, x, y)) out *= pane.transmission(std::abs(dot(pane.n, d)) / norm(d));
     return out;
 }
 

@@ -27,10 +27,6 @@ bool crosses(const Pane& pane, const Point& x, const Point& y);
 /// Transmission of the panes between two points.
 Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y);
 
-/// Factors on the bands of a ray between two points that passes every pane in proportion to the mean of the bands.
-/// The bands of such a ray are right in the mean: the product of T / mean(T) of the panes crossed.
-Spectrum colour_between(std::span<const Pane> panes, const Point& x, const Point& y);
-
 /// Like glazed_form_factor(), for a given visible convex polygon in the source's plane, relative to the receiver.
 Spectrum transmitted_form_factor(const Occluders& occluders, const SurfacePoint& at, PieceId source,
                                  std::span<const Vec3> visible, const RelativeRadiance& radiance);

@@ -212,4 +212,50 @@ TEST(WindowSky, PassesTheOtherPanes) {
     }
 }
 
+/// Sky behind a pavilion with coloured glass on two sides, which is seen through a coloured window.
+TEST(WindowSky, HasTheColoursOfAllWindowsThatLightCrosses) {
+    Room room;
+    const Point lo{-4, 5, -6}, hi{8, 8, 9};
+    room.face({{lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z}});
+    room.face({{lo.x, lo.y, hi.z}, {lo.x, hi.y, hi.z}, {hi.x, hi.y, hi.z}, {hi.x, lo.y, hi.z}});
+    room.face({{lo.x, lo.y, lo.z}, {lo.x, hi.y, lo.z}, {lo.x, hi.y, hi.z}, {lo.x, lo.y, hi.z}});
+    room.face({{hi.x, lo.y, lo.z}, {hi.x, lo.y, hi.z}, {hi.x, hi.y, hi.z}, {hi.x, hi.y, lo.z}});
+    test::add_pane(room, {{lo.x, lo.y, lo.z}, {lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z}});
+    test::add_pane(room, {{lo.x, hi.y, lo.z}, {hi.x, hi.y, lo.z}, {hi.x, hi.y, hi.z}, {lo.x, hi.y, hi.z}});
+    const Scene scene = room.scene();
+    const Stage stage(scene);
+    PlaceLight::Workspace place;
+    for (const RegionId own : {RegionId(0), RegionId(1), RegionId(2)}) {
+        SCOPED_TRACE(own.value);
+        const Region& region = scene.regions()[own];
+        const Normal& n = region.plane.n;
+        const Point x = region.loops[0][0] + 0.3 * (region.loops[0][1] - region.loops[0][0]) +
+                        0.4 * (region.loops[0][3] - region.loops[0][0]);
+        constexpr int steps = 200;
+        RandomStream random(1, Stream::mesh);
+        Spectrum sum, behind_three;
+        for (int i = 0; i < 2 * steps; ++i)
+            for (int k = 0; k < steps; ++k) {
+                const double u = random.uniform(), v = random.uniform();
+                const Vec3 r = Point{1 + (i + u) / steps, 3, 1 + (k + v) / steps} - x, w = normalized(r);
+                const double kernel = dot(n, w) * w.y / (pi * squared_norm(r) * steps * steps);
+                if (!(kernel > 0) || is_hidden(scene, x, w)) continue;
+                const Point end = x + 2 * scene.size() * w;
+                const Spectrum light =
+                    kernel * (scene.distant().radiosity(w, false) * transmission_between(scene.panes(), x, end));
+                sum += light;
+                const auto is_crossed = [&](const Pane& pane) { return crosses(pane, x, end); };
+                if (std::all_of(scene.panes().begin(), scene.panes().end(), is_crossed)) behind_three += light;
+            }
+        EXPECT_GT(mean(behind_three), 0.2 * mean(sum));
+        const Spectrum E = stage.direct.irradiance(x, n, own, place.exact);
+        const PlaceLight::Estimate by_rays = stage.place_light.rays().at(x, n, own, {.relative = 2e-3}, place);
+        const double error = 4 * std::sqrt(by_rays.variance);
+        for (std::size_t b = 0; b < bands; ++b) {
+            EXPECT_NEAR(E[b], sum[b], 2e-3 * sum[b] + 1e-3) << b;
+            EXPECT_NEAR(by_rays.irradiance[b], E[b], error + 3e-3 * E[b] + 1e-3) << b;
+        }
+    }
+}
+
 }  // namespace exitance

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
@@ -134,6 +136,8 @@ struct ForecastMesh {
     DirectProjection light;
     double own_leaves = 0;  ///< Leaves of `light`.
     double leaves = 0;      ///< Leaves of the mesh of the solve.
+    /// True if the first projection reached its limit on elements, so that `leaves` is too small.
+    bool is_limited = false;
     double finer() const { return leaves / own_leaves; }
 };
 
@@ -155,11 +159,11 @@ double leaves_a_second(const Stage& stage) {
 }
 
 /// Projects direct light for decreasing errors down to that of the solve. If the next projection would take too long or
-/// too much memory, the number of leaves is extrapolated. The first projection splits the pieces into at most
-/// `max_leaves` more elements.
-ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches) {
-    constexpr double step = 4;          // factor between the errors of two projections
-    constexpr double max_leaves = 1e5;  // limit on the leaves of a projection: about 100 MB
+/// too much memory, the number of leaves is extrapolated. A projection splits the pieces into at most `max_more` more
+/// elements. If the first one needs more, its number of leaves is a lower limit.
+ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches, std::size_t max_more) {
+    constexpr double step = 4;  // factor between the errors of two projections
+    const std::size_t max_elements = stage.pieces.size() + max_more;
     // Factor on the number of leaves of divided pieces, from one projection to the next. Measured by `solve --dry-run`
     // without extrapolation: 2.4 to 3 in an office from 2% to 0.2%, 3.4 to 3.8 in `cornell` from 2% to 0.01%.
     constexpr double min_growth = 2.5, max_growth = step;
@@ -167,27 +171,34 @@ ForecastMesh forecast_mesh(const Stage& stage, const Plan& plan, bool patches) {
     const StopRequest never;
     double coarser = 1;
     while (step * coarser * error <= recognizable_error) coarser *= step;
-    ForecastMesh out;
-    const double affordable = std::min(max_leaves, leaves_a_second(stage));
-    double growth = min_growth, whole = 0;  // `whole`: undivided pieces of the last projection
-    for (; coarser >= 1; coarser /= step) {
-        const double next = whole + growth * (out.leaves - whole);
-        if (out.leaves > 0 && next > affordable) {
-            for (; coarser >= 1; coarser /= step) out.leaves = whole + growth * (out.leaves - whole);
-            break;
-        }
+    const auto project = [&](double coarser) {
         const Knobs knobs = coarser > 1 ? first_knobs(plan, stage, coarser * error) : plan.knobs;
         MeshSize mesh = knobs.solve_mesh;
         mesh.edge = std::max(mesh.edge, plan.knobs.solve_mesh.edge);
         mesh.grading_levels = std::min(mesh.grading_levels, plan.knobs.solve_mesh.grading_levels);
         if (patches && !plan.options.mesh_size)
             mesh = {calibrated::patch_edge * mesh.edge, std::max(0, mesh.grading_levels - 1)};
-        out.light = project_direct_light(stage,
-                                         {.mesh = mesh,
-                                          .tolerance = (patches ? 2 : 1) * knobs.direct_tolerance,
-                                          .min_area = plan.options.min_area,
-                                          .max_elements = stage.pieces.size() + static_cast<std::size_t>(max_leaves)},
-                                         never);
+        return project_direct_light(stage,
+                                    {.mesh = mesh,
+                                     .tolerance = (patches ? 2 : 1) * knobs.direct_tolerance,
+                                     .min_area = plan.options.min_area,
+                                     .max_elements = max_elements},
+                                    never);
+    };
+    ForecastMesh out;
+    const double affordable = std::min(static_cast<double>(max_more), leaves_a_second(stage));
+    double growth = min_growth, whole = 0;  // `whole`: undivided pieces of the last projection
+    for (; coarser >= 1; coarser /= step) {
+        const bool is_first = out.leaves == 0;
+        std::optional<DirectProjection> light;
+        if (is_first || whole + growth * (out.leaves - whole) <= affordable) light = project(coarser);
+        const bool is_cut_short = light && light->tree.size() >= max_elements;
+        if (!light || (is_cut_short && !is_first)) {
+            for (; coarser >= 1; coarser /= step) out.leaves = whole + growth * (out.leaves - whole);
+            break;
+        }
+        out.is_limited |= is_cut_short;
+        out.light = std::move(*light);
         out.own_leaves = static_cast<double>(out.light.tree.leaves().size());
         const double parts = out.leaves - whole;
         whole = 0;
@@ -269,7 +280,7 @@ Forecast of_published(const Stage& stage, const Plan& plan, const Pilot& pilot, 
 
 }  // namespace
 
-Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked) {
+Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked, std::size_t max_elements) {
     const Result<SolveOptions> settled = with_published_method(asked);
     if (!settled) return settled.error();
     const SolveOptions& options = *settled;
@@ -281,13 +292,14 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked) {
     if (options.memory_limit_bytes && !is_published)
         if (const Result<bool> fits = fit_into_memory(plan.knobs, stage, plan.options); !fits) return fits.error();
     const bool patches = plan.options.method == Method::substructuring && !is_published;
-    const ForecastMesh mesh = forecast_mesh(stage, plan, patches);
+    const ForecastMesh mesh = forecast_mesh(stage, plan, patches, max_elements);
     const DirectProjection& direct = mesh.light;
 
     Forecast out{.method = name_in(method_names, plan.options.method),
                  .surfaces = scene.surfaces().size(),
                  .regions = scene.regions().size(),
-                 .emitters = scene.emitters().size() + scene.lights().size()};
+                 .emitters = scene.emitters().size() + scene.lights().size(),
+                 .is_at_least = mesh.is_limited};
     const Pilot pilot = run_pilot(stage, plan, direct);
     if (is_published) return of_published(stage, plan, pilot, mesh.leaves, std::move(out));
     const double projected = mesh.leaves;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 #include "exitance/base/result.hpp"
@@ -17,7 +18,12 @@ struct Forecast {
     double rays = 0;
     double seconds = 0;       ///< Wall time with the present number of threads.
     double memory_bytes = 0;  ///< Upper limit.
+    /// True if a mesh reached its limit on elements. All other numbers then are lower limits.
+    bool is_at_least = false;
 };
+
+/// Number of elements that a forecast adds to the pieces of a scene: about 100 MB.
+inline constexpr std::size_t max_forecast_elements = 100'000;
 
 /// Makes the plan of the solve, projects direct light on its elements, and gathers the light of the first reflection at
 /// a few hundred points. Their noise gives the number of rays, their time the seconds. Further splitting of elements
@@ -26,6 +32,8 @@ struct Forecast {
 ///
 /// For published forms on constant elements, the elements and the rays are those of the form. A ray of the form takes a
 /// quarter of the time of a gather's ray.
-Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked);
+/// max_elements  limit on the elements that are added to the pieces of the scene
+Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked,
+                                std::size_t max_elements = max_forecast_elements);
 
 }  // namespace exitance

@@ -63,6 +63,17 @@ TEST(Forecast, ExtrapolatesMeshesThatWouldBeTooLarge) {
     EXPECT_GT(fine->solve_elements, 100 * coarse->solve_elements);
     EXPECT_GT(fine->memory_bytes, 10 * coarse->memory_bytes);
     EXPECT_GT(fine->seconds, coarse->seconds);
+    EXPECT_FALSE(fine->is_at_least || coarse->is_at_least);
+}
+
+TEST(Forecast, SaysThatItsNumbersAreLowerLimitsIfTheMeshReachesItsLimit) {
+    const Scene scene = built_scene("cornell");
+    const Result<Forecast> whole = forecast_solve(scene, {.error = 0.05}),
+                           limited = forecast_solve(scene, {.error = 0.05}, 40);
+    ASSERT_TRUE(whole && limited);
+    EXPECT_FALSE(whole->is_at_least);
+    EXPECT_TRUE(limited->is_at_least);
+    EXPECT_LT(limited->solve_elements, whole->solve_elements);
 }
 
 }  // namespace

@@ -81,6 +81,39 @@ TEST(GlassColours, ARayIsColouredBeforeAndAfterItIsMirrored) {
     }
 }
 
+TEST(GlassColours, APieceOfARayHasTheColoursOfThePanesBetweenItsEnds) {
+    SceneDescription d;
+    d.file = "glass.obj";
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    d.points = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 0}};
+    for (std::size_t i = 0; i < 3; ++i) {  // two panes of different colours, and a grey one
+        const double z = 1 + static_cast<double>(i);
+        Pane pane;
+        pane.corners = {{-9, -9, z}, {9, -9, z}, {9, 9, z}, {-9, 9, z}}, pane.transmissivity = Spectrum(0.3);
+        if (i < 2) pane.transmissivity[i] = 0.9;
+        d.panes.push_back(pane);
+    }
+    const CheckedScene checked = make_scene(std::move(d));
+    ASSERT_TRUE(static_cast<bool>(checked.scene));
+    const Scene& scene = *checked.scene;
+    const GlassColours colours(scene);
+    const Vec3 w = normalized(Vec3{0.3, -0.2, 1});
+    Spectrum of_pane[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Spectrum T = scene.panes()[i].transmission(w.z);
+        of_pane[i] = T / mean(T);
+    }
+    const auto at = [&](double z) { return Point{0.1, 0.2, 0} + z / w.z * w; };
+    for (std::size_t b = 0; b < bands; ++b) {
+        EXPECT_NEAR(colours.between(at(0.5), at(3.5))[b], of_pane[0][b] * of_pane[1][b], 1e-12) << b;
+        EXPECT_NEAR(colours.between(at(0.5), at(1.5))[b], of_pane[0][b], 1e-12) << b;
+        EXPECT_NEAR(colours.between(at(3.5), at(1.5))[b], of_pane[1][b], 1e-12) << b;
+        EXPECT_NEAR(colours.between(at(0.2), at(0.8))[b], 1, 1e-12) << b;
+    }
+}
+
 TEST(GlassColours, GreyPanesGiveNone) {
     SceneDescription d;
     d.file = "glass.obj";
