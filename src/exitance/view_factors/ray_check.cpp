@@ -11,8 +11,7 @@
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/view_factors/accuracy.hpp"
-#include "exitance/view_factors/face_sampler.hpp"
-#include "exitance/visibility/rays.hpp"
+#include "exitance/view_factors/row_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -36,8 +35,9 @@ struct BatchSums {
 };
 
 /// Estimates F by points on both faces: the mean of the kernel cos cos / (pi r^2) over unoccluded pairs.
-RayEntry by_points(const RayTracer& tracer, const FaceSampler& from, RegionId own, const FaceSampler& to,
-                   RegionId other, std::size_t rays, std::uint64_t seed) {
+RayEntry by_points(const RowScene& ready, std::size_t i, std::size_t j, std::size_t rays, std::uint64_t seed) {
+    const FaceSampler &from = ready.samplers[i], &to = ready.samplers[j];
+    const bool hides_x = ready.hidden_parts.has(i), hides_y = ready.hidden_parts.has(j);
     const std::size_t each = (rays + batches - 1) / batches;
     std::vector<Point> xs, ys;
     std::vector<double> kernels;
@@ -55,7 +55,9 @@ RayEntry by_points(const RayTracer& tracer, const FaceSampler& from, RegionId ow
             xs.push_back(x), ys.push_back(y);
             kernels.push_back(near * far / (pi * squared * squared) * to.area());
         }
-        tracer.occluded(xs, ys, own, other, std::span(blocked.get(), xs.size()));
+        ready.tracer.occluded(xs, ys, ready.region(i), ready.region(j), std::span(blocked.get(), xs.size()));
+        for (std::size_t k = 0; k < xs.size(); ++k)
+            blocked[k] = blocked[k] || (hides_x && ready.is_hidden(xs[k], i)) || (hides_y && ready.is_hidden(ys[k], j));
         double sum = 0;
         for (std::size_t k = 0; k < xs.size(); ++k) unoccluded += kernels[k], sum += blocked[k] ? 0 : kernels[k];
         sums.add(sum / static_cast<double>(each));
@@ -66,8 +68,9 @@ RayEntry by_points(const RayTracer& tracer, const FaceSampler& from, RegionId ow
 }
 
 /// Estimates F by rays of density cos / pi from a face: the share that hits the other's front first.
-RayEntry by_directions(const RayTracer& tracer, const FaceSampler& from, RegionId own, SurfaceId target,
-                       std::size_t rays, std::uint64_t seed) {
+RayEntry by_directions(const RowScene& ready, std::size_t i, std::size_t j, std::size_t rays, std::uint64_t seed) {
+    const FaceSampler& from = ready.samplers[i];
+    const bool hides_start = ready.hidden_parts.has(i), hides_hit = ready.hidden_parts.has(j);
     const std::size_t each = (rays + batches - 1) / batches;
     std::vector<Point> xs(each);
     std::vector<Vec3> directions(each);
@@ -80,9 +83,13 @@ RayEntry by_directions(const RayTracer& tracer, const FaceSampler& from, RegionI
             xs[k] = from(points(k, 0), points(k, 1));
             directions[k] = cosine_direction(frame, points(k, 2), points(k, 3));
         }
-        tracer.nearest(xs, directions, own, hits);
-        const auto met = std::count_if(hits.begin(), hits.end(),
-                                       [&](const RayHit& hit) { return hit.surface == target && hit.front; });
+        ready.tracer.nearest(xs, directions, ready.region(i), hits);
+        std::size_t met = 0;
+        for (std::size_t k = 0; k < each; ++k) {
+            if (hits[k].surface.is_none() || hits[k].surface.value != j || !hits[k].front) continue;
+            if (hides_start && ready.is_hidden(xs[k], i)) continue;
+            met += !hides_hit || !ready.is_hidden(place_of(ready.scene, hits[k], xs[k], directions[k]), j);
+        }
         sums.add(static_cast<double>(met) / static_cast<double>(each));
     }
     const double one = 1 / static_cast<double>(each * batches);
@@ -112,16 +119,15 @@ std::vector<DrawnEntry> draw_entries(const SparseFactors& table, const RayCheckO
 
 }  // namespace
 
-RayEntry view_factor_by_rays(const Scene& scene, const RayTracer& tracer, SurfaceId i, SurfaceId j, std::size_t rays,
+RayEntry view_factor_by_rays(const RowScene& ready, std::size_t i, std::size_t j, std::size_t rays,
                              std::uint64_t seed) {
-    const FaceSampler one(scene, i), two(scene, j);
-    const Surface &a = scene.surfaces()[i], &b = scene.surfaces()[j];
+    const FaceSampler &one = ready.samplers[i], &two = ready.samplers[j];
     const Vec3 apart = max(max(two.box().lo - one.box().hi, one.box().lo - two.box().hi), Vec3{});
     const double size = std::max(one.box().diagonal(), two.box().diagonal());
-    if (norm(apart) > near_sizes * size) return by_points(tracer, one, a.region, two, b.region, rays, seed);
+    if (norm(apart) > near_sizes * size) return by_points(ready, i, j, rays, seed);
     // More rays from the smaller face hit the other one.
-    if (one.area() <= two.area()) return by_directions(tracer, one, a.region, j, rays, seed);
-    RayEntry back = by_directions(tracer, two, b.region, i, rays, seed);
+    if (one.area() <= two.area()) return by_directions(ready, i, j, rays, seed);
+    RayEntry back = by_directions(ready, j, i, rays, seed);
     back.F *= two.area() / one.area(), back.standard_error *= two.area() / one.area();
     return back;
 }
@@ -131,7 +137,7 @@ RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const Ray
     RayCheck check;
     const std::vector<DrawnEntry> drawn = draw_entries(table, options);
     if (drawn.empty()) return check;
-    const RayTracer tracer(scene);
+    const RowScene ready(scene);
     std::vector<RayEntry> found(drawn.size());
     std::atomic<bool> stopped{false};
     shared_ranges(
@@ -141,7 +147,7 @@ RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const Ray
                 if (stop.requested()) stopped = true;
                 if (stopped) return;
                 const auto [i, j, F] = drawn[k];
-                found[k] = view_factor_by_rays(scene, tracer, SurfaceId(i), SurfaceId(j), options.rays,
+                found[k] = view_factor_by_rays(ready, i, j, options.rays,
                                                hash(options.seed, std::uint64_t{i} * table.size() + j));
             }
         },

@@ -36,8 +36,8 @@ struct RayEntry {
 
 /// Estimates F_ij by pairs of points on both faces or, if these nearly touch, by directions from one of them. Uses
 /// Owen-scrambled Sobol points in 64 independent batches, whose spread gives the standard error. About 0.1 us per ray.
-RayEntry view_factor_by_rays(const Scene& scene, const class RayTracer& tracer, SurfaceId i, SurfaceId j,
-                             std::size_t rays, std::uint64_t seed);
+RayEntry view_factor_by_rays(const struct RowScene& ready, std::size_t i, std::size_t j, std::size_t rays,
+                             std::uint64_t seed);
 
 /// Compares randomly chosen entries with rays. Deterministic on any number of threads.
 RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const RayCheckOptions& options,

@@ -33,7 +33,7 @@ void RowCaster::trace(std::size_t face, bool under_others) {
     if (under_others) {  // rays that start below another face hit it at once, so remove them
         std::size_t kept = 0;
         for (std::size_t k = 0; k < origins_.size(); ++k)
-            if (!scene_.occluders.is_covered(origins_[k], scene_.faces[face].plane.n, own))
+            if (!scene_.is_hidden(origins_[k], face))
                 origins_[kept] = origins_[k], directions_[kept++] = directions_[k];
         back_in_batch_ += static_cast<std::uint32_t>(origins_.size() - kept);
         origins_.resize(kept), directions_.resize(kept);
@@ -41,12 +41,13 @@ void RowCaster::trace(std::size_t face, bool under_others) {
     }
     const std::span<RayHit> hits(found_.data(), origins_.size());
     scene_.tracer.nearest(origins_, directions_, own, hits);
-    for (const RayHit& hit : hits) {
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        const RayHit& hit = hits[k];
         if (hit.surface.is_none()) {
             ++sky_in_batch_;
             continue;
         }
-        if (!hit.front || hit.surface.value == face) {
+        if (!hit.front || hit.surface.value == face || scene_.ends_hidden(hit, origins_[k], directions_[k])) {
             ++back_in_batch_;
             continue;
         }

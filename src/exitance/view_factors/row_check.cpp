@@ -118,13 +118,15 @@ std::vector<double> cast_check_rays(const RowScene& ready, std::size_t face, std
         for (std::size_t k = first; k < std::min(first + block, n); ++k) {
             const double u = random.uniform(), v = random.uniform(), s = random.uniform(), t = random.uniform();
             const Point x = sampler(u, v);
-            if (ready.occluders.is_covered(x, sampler.normal(), ready.region(face))) continue;
+            if (ready.is_hidden(x, face)) continue;
             origins.push_back(x), directions.push_back(cosine_direction(frame, s, t));
         }
         if (origins.empty()) continue;
         ready.tracer.nearest(origins, directions, ready.region(face), std::span(hits).first(origins.size()));
         for (std::size_t k = 0; k < origins.size(); ++k)
-            if (hits[k].front && hits[k].surface.value != face) shares[hits[k].surface.value] += 1;
+            if (hits[k].front && hits[k].surface.value != face &&
+                !ready.ends_hidden(hits[k], origins[k], directions[k]))
+                shares[hits[k].surface.value] += 1;
     }
     for (double& share : shares) share /= static_cast<double>(n);
     return shares;

@@ -158,7 +158,7 @@ void RowEstimator::find_candidates(std::size_t face) {
     // A pair is treated individually if that saves at least this number of cast rays.
     const double negligible = candidate_share * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
     candidates_.clear();
-    under_others_ = false;
+    under_others_ = scene_.hidden_parts.has(face);
     scene_.near.visit(x, reach, negligible, [&](std::uint32_t j) {
         const ViewFace& other = scene_.faces[j];
         bool cut = false;
@@ -211,8 +211,9 @@ double RowEstimator::smallest_candidate(std::size_t face, double variance) {
 View RowEstimator::view_of(std::size_t face, std::size_t other) {
     const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
     bool any = false, all = true;
-    for (const std::vector<Point>& piece_a : a.pieces)
-        for (const std::vector<Point>& piece_b : b.pieces) {
+    const auto pieces_a = scene_.hidden_parts.pieces(face, other), pieces_b = scene_.hidden_parts.pieces(other, face);
+    for (const std::vector<Point>& piece_a : pieces_a)
+        for (const std::vector<Point>& piece_b : pieces_b) {
             shaft_.set(scene_.occluders, {piece_a, a.plane.n, scene_.region(face), false},
                        {piece_b, b.plane.n, scene_.region(other), false});
             const View view = shaft_.classify(blockers_, 0);
@@ -222,15 +223,31 @@ View RowEstimator::view_of(std::size_t face, std::size_t other) {
     return !any ? View::none : all ? View::open : View::mixed;
 }
 
+/// Exchange area of the parts of two faces that are not hidden, m^2.
+double RowEstimator::unoccluded_exchange(std::size_t face, std::size_t other) const {
+    const HiddenParts& hidden = scene_.hidden_parts;
+    const double tolerance = contour_share * error_;
+    if (!hidden.matter(face, other) && !hidden.matter(other, face))
+        return exchange_area(scene_.faces[face].outline, scene_.faces[other].outline, tolerance);
+    double sum = 0;
+    const auto own = hidden.pieces(face, other), of_other = hidden.pieces(other, face);
+    for (const std::vector<Point>& a : own)
+        for (const std::vector<Point>& b : of_other) sum += exchange_area(a, b, tolerance);
+    return sum;
+}
+
 void RowEstimator::classify_pair(std::size_t face, Pair& pair, std::uint32_t round) {
     const ViewFace &own = scene_.faces[face], &other = scene_.faces[pair.column];
     const View view = view_of(face, pair.column);
     pair.is_exact = view != View::mixed;
     if (view == View::none) return;
-    pair.to_cast = !pair.is_exact && (under_others_ || box_distance(own, other) <
-                                                           near_kernel_sizes * std::max(own.diameter, other.diameter));
+    pair.to_cast =
+        !pair.is_exact && (under_others_ || scene_.hidden_parts.can_be_met(pair.column) ||
+                           box_distance(own, other) < near_kernel_sizes * std::max(own.diameter, other.diameter));
     if (pair.to_cast) return;
-    pair.unoccluded = exchange_area(own.outline, other.outline, contour_share * error_) / own.area;
+    pair.unoccluded = (pair.is_exact ? unoccluded_exchange(face, pair.column)
+                                     : exchange_area(own.outline, other.outline, contour_share * error_)) /
+                      own.area;
     pair.visible = pair.is_exact ? 1
                                  : sampler_.visible_share(face, pair.column,
                                                           hash(seed_, face, round, std::uint64_t(Use::pair_pilot),

@@ -66,6 +66,7 @@ class RowEstimator {
     bool may_be_under(std::size_t face, std::size_t other) const;
     double smallest_candidate(std::size_t face, double variance);
     void classify(std::size_t face, std::uint32_t round);
+    double unoccluded_exchange(std::size_t face, std::size_t other) const;
     View view_of(std::size_t face, std::size_t other);
     void classify_pair(std::size_t face, Pair& pair, std::uint32_t round);
     Plan plan(double limit);

@@ -7,7 +7,12 @@
 namespace exitance {
 
 RowScene::RowScene(const Scene& s)
-    : scene(s), occluders(s), tracer(s), faces(make_view_faces(s)), slack(plane_slack(occluders)) {
+    : scene(s),
+      occluders(s),
+      tracer(s),
+      faces(make_view_faces(s)),
+      slack(plane_slack(occluders)),
+      hidden_parts(occluders, faces, slack) {
     samplers.reserve(faces.size());
     for (SurfaceId id : s.surfaces().ids()) samplers.emplace_back(s, id);
     for (const ViewFace& face : faces) {

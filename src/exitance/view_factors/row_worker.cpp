@@ -151,7 +151,13 @@ void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, cons
     standing_between_.push_back(&clipped_.back());
 }
 
-/// F_ij with blockers. Of a blocker that crosses the plane of either face, only the part in front of both counts.
+/// True if parts of two faces must be cut off, since a body that touches both faces hides them.
+bool RowWorker::has_hidden_parts(std::size_t i, std::size_t j) const {
+    return pairs_.hidden_parts().matter(i, j) || pairs_.hidden_parts().matter(j, i);
+}
+
+/// F_ij with blockers, or with hidden parts. Of a blocker that crosses the plane of either face, only the part in front
+/// of both counts.
 double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded) {
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     standing_between_.clear();
@@ -176,12 +182,15 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
             if (!front_r_.empty()) add_clipped(make_sheet(front_r_, blocker.faces[k]), receiver, source);
         }
     }
-    if (standing_between_.empty()) return unoccluded = true, 0;
+    const bool is_cut = has_hidden_parts(i, j);
+    if (standing_between_.empty() && !is_cut) return unoccluded = true, 0;
+    std::vector<std::vector<Point>> cut_r, cut_s;
+    if (is_cut) cut_r = pairs_.hidden_parts().pieces(i, j), cut_s = pairs_.hidden_parts().pieces(j, i);
 
     double total = 0;
     bool all = true;
-    for (const std::vector<Point>& piece_r : receiver.pieces)
-        for (const std::vector<Point>& piece_s : source.pieces) {
+    for (const std::vector<Point>& piece_r : is_cut ? cut_r : receiver.pieces)
+        for (const std::vector<Point>& piece_s : is_cut ? cut_s : source.pieces) {
             clip(piece_r, source.plane, front_r_);
             clip(piece_s, receiver.plane, front_s_);
             if (front_r_.empty() || front_s_.empty()) continue;
@@ -200,7 +209,7 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
             if (free) part = exchange_area(front_r_, front_s_, entry_contour_share * tolerance_);
             total += part;
         }
-    unoccluded = all;
+    unoccluded = all && !is_cut;
     return total / receiver.area;
 }
 
@@ -213,7 +222,7 @@ double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means me
     pairs_.find_blockers(i, of_row_);
     pairs_.find_blockers(i, j, of_row_, of_pair_);
     is_cluttered_ = of_pair_.size() > many_blockers || means != Means::usual;
-    bool unoccluded = of_pair_.empty();
+    bool unoccluded = of_pair_.empty() && !has_hidden_parts(i, j);
     double F = unoccluded ? 0 : occluded(i, j, of_pair_, unoccluded);
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     if (unoccluded)
@@ -230,7 +239,7 @@ void RowWorker::compute(std::size_t i, std::span<double> row) {
         if (j == i || pairs_.is_hidden(i, j) || !pairs_.face_each_other(i, j, cut)) continue;
         pairs_.find_blockers(i, j, of_row_, of_pair_);
         is_cluttered_ = of_pair_.size() > many_blockers;
-        bool unoccluded = of_pair_.empty();
+        bool unoccluded = of_pair_.empty() && !has_hidden_parts(i, j);
         if (!unoccluded) row[j] = occluded(i, j, of_pair_, unoccluded);
         if (!unoccluded) continue;
         row[j] = 0;

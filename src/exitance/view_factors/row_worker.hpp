@@ -36,6 +36,7 @@ class RowWorker {
     static constexpr int max_points = 8;  ///< Gauss points per side, at most; nearer pairs use the contour integral.
 
     int points_for(const ViewFace& receiver, const ViewFace& source) const;
+    bool has_hidden_parts(std::size_t i, std::size_t j) const;
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
     double occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                            std::span<const Point> s, bool& unoccluded);

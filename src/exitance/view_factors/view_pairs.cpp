@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -54,11 +55,59 @@ class BoxShaft {
     std::size_t count_ = 0;
 };
 
+/// Lowers sheets into their faces if they are raised because they are on top of others in one plane (Occluders::lift):
+/// raised ones would hide their own faces.
+void lower_raised_sheets(const Occluders& occluders, std::vector<ConvexBlocker>& blockers) {
+    const Field<PieceId, ConvexPiece>& pieces = occluders.pieces();
+    for (const PieceId p : pieces.ids()) {
+        const double lift = pieces[p].region.is_none() ? 0 : occluders.lift(pieces[p].region);
+        if (lift == 0) continue;
+        const std::span<const Point> corners = occluders.corners(p);
+        for (ConvexBlocker& blocker : blockers) {
+            if (blocker.is_solid() || !std::ranges::equal(blocker.points, corners)) continue;
+            const Vec3 down = -lift * blocker.faces[0].n;
+            for (Point& q : blocker.points) q = q + down;
+            blocker.faces[0].offset -= lift;
+        }
+    }
+}
+
+/// Replaces hollow solids by their faces: a solid as a whole would hide everything inside it.
+std::vector<ConvexBlocker> with_open_hollows(std::vector<ConvexBlocker> blockers, std::span<const ViewFace> faces,
+                                             double slack) {
+    if (blockers.empty() || !blockers[0].is_solid()) return blockers;
+    const FaceBodies bodies(faces, slack);
+    std::vector<ConvexBlocker> out, sheets;
+    for (ConvexBlocker& blocker : blockers) {
+        if (!blocker.is_solid() || !bodies.has_body_inside(blocker, faces, slack)) {
+            out.push_back(std::move(blocker));
+            continue;
+        }
+        std::vector<Point> corners;
+        for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
+            corners.clear();
+            for (const std::uint32_t c : blocker.loops[k]) corners.push_back(blocker.points[c]);
+            sheets.push_back(make_sheet(corners, blocker.faces[k]));
+        }
+    }
+    std::erase_if(sheets, [&](const ConvexBlocker& sheet) {  // with all faces on one side, it hides nothing
+        std::uint32_t shared = ~0u;
+        for (const ViewFace& face : faces) shared &= sides(sheet, face.outline, slack);
+        return shared != 0;
+    });
+    std::move(sheets.begin(), sheets.end(), std::back_inserter(out));
+    return out;
+}
+
 }  // namespace
 
 ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
-    : occluders_(scene), slack_(plane_slack(occluders_)), faces_(make_view_faces(scene)) {
-    blockers_ = make_convex_blockers(occluders_, slack_);
+    : occluders_(scene),
+      slack_(plane_slack(occluders_)),
+      faces_(make_view_faces(scene)),
+      hidden_parts_(occluders_, faces_, slack_) {
+    blockers_ = with_open_hollows(make_convex_blockers(occluders_, slack_), faces_, slack_);
+    lower_raised_sheets(occluders_, blockers_);
     for (const ConvexBlocker& b : blockers_) {
         Box box;
         for (const Point& p : b.points) box.add(p);

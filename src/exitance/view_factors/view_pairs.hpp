@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/view_factors/hidden_parts.hpp"
 #include "exitance/view_factors/view_face.hpp"
 #include "exitance/visibility/convex_blockers.hpp"
 #include "exitance/visibility/joint_shadow.hpp"
@@ -30,6 +31,7 @@ class ViewPairs {
 
     const std::vector<ViewFace>& faces() const { return faces_; }
     const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
+    const HiddenParts& hidden_parts() const { return hidden_parts_; }
     /// Points nearer to a plane than this lie in it, metres.
     double slack() const { return slack_; }
 
@@ -54,6 +56,7 @@ class ViewPairs {
     Occluders occluders_;
     double slack_;
     std::vector<ViewFace> faces_;
+    HiddenParts hidden_parts_;
     std::vector<ConvexBlocker> blockers_;
     std::vector<Box> boxes_;
     std::vector<std::uint32_t> sides_;    ///< One row per face, one column per blocker.

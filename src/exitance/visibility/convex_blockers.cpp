@@ -289,6 +289,11 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
     return join_sides(left_of, part);
 }
 
+std::vector<ConvexBlocker> make_solid_blockers(const Occluders& occluders, double slack) {
+    std::vector<bool> used(occluders.scene().regions().size(), false);
+    return Bodies(occluders, slack).solids(used);
+}
+
 std::vector<ConvexBlocker> make_convex_blockers(const Occluders& occluders, double slack) {
     const Scene& scene = occluders.scene();
     std::vector<bool> used(scene.regions().size(), false);

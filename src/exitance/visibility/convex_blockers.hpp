@@ -37,6 +37,10 @@ ConvexBlocker make_sheet(std::span<const Point> outline, const Plane& plane);
 /// Returns false if rounding leaves no closed body, or if it has too many faces; `part` is then unusable.
 bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, ConvexBlocker& part);
 
+/// The closed convex bodies of a scene, first in make_convex_blockers(). O(n log n).
+/// slack  metres: points nearer to a plane than this are in it
+std::vector<ConvexBlocker> make_solid_blockers(const Occluders& occluders, double slack);
+
 /// Everything in a scene that can block light: closed convex bodies first, then the pieces of all other regions as
 /// sheets. Sheets with the whole scene on one side (the walls of a convex room) block nothing and are omitted. O(n log
 /// n).
