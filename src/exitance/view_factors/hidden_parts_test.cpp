@@ -49,10 +49,10 @@ Point turned(const Point& p) {
 
 const std::vector<Transform>& transforms() {
     static const std::vector<Transform> all = {[](const Point& p) { return p; }, turned,
+                                               [](const Point& p) { return 1e-3 * p; },
                                                [](const Point& p) {
                                                    return turned(p) + Vec3{1000, -700, 500};
                                                },
-                                               [](const Point& p) { return 1e-3 * p; },
                                                [](const Point& p) { return 1e3 * turned(p); }};
     return all;
 }
@@ -82,9 +82,9 @@ struct Expected {
     double sum;
 };
 
-/// Compares sums of rows, by quadrature and by rays, in all positions and sizes.
-void expect_sums(const Outlines& outlines, const std::vector<Expected>& expected) {
-    for (std::size_t k = 0; k < transforms().size(); ++k) {
+/// Compares sums of rows, by quadrature and by rays, in all positions and sizes, or in every `step`-th of them.
+void expect_sums(const Outlines& outlines, const std::vector<Expected>& expected, std::size_t step = 1) {
+    for (std::size_t k = 0; k < transforms().size(); k += step) {
         SCOPED_TRACE(k);
         const Scene scene = scene_of(outlines, transforms()[k]);
         const ViewFactors table = dense_view_factors(scene, 1e-3);
@@ -134,7 +134,8 @@ TEST(HiddenParts, ABodyThatPiercesFloorAndWallHidesWhatIsInside) {
 TEST(HiddenParts, ABodyThatPiercesAContactHidesItsSection) {
     Outlines faces = touching(0.5);
     add_box(faces, {1.5, 1.3, 0.25}, {2.6, 1.7, 0.75});
-    expect_sums(faces, {{0, 0.9}, {9, 0.4}, {17, 0}});
+    // as it is, and moved: five positions would take four fifths of the time of all these tests
+    expect_sums(faces, {{0, 0.9}, {9, 0.4}, {17, 0}}, 3);
 }
 
 TEST(HiddenParts, ABoxInTheNotchOfAnotherBodyIsHiddenWhereTheyTouch) {
