@@ -182,7 +182,8 @@ TEST_F(ProgramOfProcesses, StopTogetherAtTheTimeLimit) {
     EXPECT_EQ(written->statistics.stopped_by, StopReason::time_limit);
     for (const std::string& warning : written->statistics.warnings)
         EXPECT_EQ(warning.find("was stopped"), std::string::npos) << warning;
-    EXPECT_NE(run.err.find("the time limit ended the solve"), std::string::npos) << run.err;
+    // An attempt is stopped, or the next one is expected not to fit into the time that is left.
+    EXPECT_NE(run.err.find("the time limit"), std::string::npos) << run.err;
 }
 
 TEST_F(ProgramOfProcesses, ResumeFromACheckpointOfAnotherNumberOfProcesses) {

@@ -20,6 +20,7 @@ TEST(ProgramUsage, HelpBeginsWithAnExampleThatNamesTheVerb) {
         EXPECT_EQ(help.status, 0) << verb;
         EXPECT_EQ(help.out.find("Example:\n  exitance " + verb), 0u) << help.out;
         EXPECT_EQ(help.err, "");
+        EXPECT_EQ(run_program({"help", verb}).out, help.out);
     }
 }
 

@@ -27,9 +27,10 @@ struct WrongFurnace {
             delivered.first_value.resize(delivered.tree.size(), 0);
             delivered.first_value[e] = static_cast<std::uint32_t>(delivered.values.size());
             for (int k = 0; k < patch.corner_count(); ++k) delivered.add_value(Spectrum(1 + delta));
-            for (double u : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+            for (int k = 0; k < 100; ++k) {
+                const double u = (k % 10 + 0.5) / 10, v = (k / 10 + 0.5) / 10;
                 ResidualSample s;
-                s.place = {e, {u, 1 - u}}, s.region = region, s.weight = patch.area(), s.leaf = 0;
+                s.place = {e, {u, v}}, s.region = region, s.weight = patch.area(), s.leaf = 0;
                 samples.push_back(s);
             }
         }

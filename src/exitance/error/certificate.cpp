@@ -12,39 +12,12 @@
 #include "exitance/error/coarse_response.hpp"
 #include "exitance/error/error_factors.hpp"
 #include "exitance/error/error_tail.hpp"
+#include "exitance/error/sample_sums.hpp"
 #include "exitance/error/surface_errors.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/transport/narrow_places.hpp"
 
 namespace exitance {
-namespace {
-
-/// Weighted sums over the samples of the scene, or of one room.
-struct SampleSums {
-    double weight = 0;
-    std::array<double, batches> squared{};  ///< Squared errors, by batch.
-    /// Sums over the samples whose residual is divided into the parts of the local pass and of the method.
-    double divided_weight = 0, local = 0, method = 0;
-    double rough = 0;  ///< The part of `local` at places where the light varies too much for the elements (RoughPlace).
-
-    /// Adds sample number `k`.
-    void add(const ResidualSample& s, double sample_weight, std::size_t k) {
-        weight += sample_weight;
-        squared[k % batches] += sample_weight * batches * s.squared;
-        if (!s.is_divided) return;
-        divided_weight += sample_weight;
-        local += sample_weight * mean(s.local1 * s.local2);
-        method += sample_weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
-    }
-
-    /// Sets the parts of the residual in a certificate, relative to `light`, W/m^2.
-    void set_parts(Certificate& out, double light) const {
-        const auto part = [&](double sum) { return std::sqrt(std::max(0.0, sum / divided_weight)) / light; };
-        out.local = part(local), out.method = part(method), out.rough = part(rough);
-    }
-};
-
-}  // namespace
 
 struct Certifier::Content {
     const Stage& stage;
@@ -96,7 +69,8 @@ struct Certifier::Content {
     void measure_p99(Certificate& out);
     void measure_each_body(Certificate& out);
     std::vector<BodyAtPoints> bodies_at_points() const;
-    ErrorFactors raise_by_paths(const LatePaths& by_paths, Certificate& out);
+    void choose_largest(Certificate& out) const;
+    double raise_by_paths(const LatePaths& by_paths, Certificate& out);
     void check_by_paths(Certificate& out);
     double true_mean(double mean_error) const;
     bool is_rough(const ResidualSample& s, double weight, const SampleSums& all, double light) const;
@@ -104,9 +78,17 @@ struct Certifier::Content {
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<RoomError> rooms;
-    std::vector<BodyError> bodies;          ///< Sorted by descending area.
-    std::vector<double> factors_of_bodies;  ///< Factors on the errors of bodies, by paths; empty: not measured.
-    std::vector<PointError> body_points;    ///< Points of the bodies that were measured at further points.
+    std::vector<BodyError> bodies;        ///< Sorted by descending area.
+    std::vector<PointError> body_points;  ///< Points of the bodies that were measured at further points.
+    ErrorFactors factors;                 ///< Factors on all errors, by paths; lists are empty before `check_by_paths`.
+    SampleSums whole_sums;                ///< Sums over all samples, after the last `judge`.
+    std::vector<SampleSums> room_sums;    ///< Sums over the samples of every room; empty if the scene is one room.
+    std::vector<double> room_uncertainties;  ///< Standard errors of the errors of `rooms`.
+
+    double factor_of_room(std::size_t room) const { return factors.rooms.empty() ? 1 : factors.rooms[room]; }
+    double factor_of_body(SurfaceId face) const {
+        return factors.bodies.empty() ? 1 : factors.bodies[options.bodies->body[face]];
+    }
 };
 
 /// Chooses the parameters for checking hits of rays from a room, from a pilot at some of its places.
@@ -166,32 +148,41 @@ void Certifier::Content::measure_residuals(std::size_t later) {
 void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     const std::vector<double> found = response.reflected_by_room();
+    rooms.clear(), room_sums.assign(count, {}), room_uncertainties.clear();
     if (count == 0) {
         rooms = {{stage.area, found[0], out.estimate, out.mean_reflected}};
-        out.worst_room = out.estimate, out.room_uncertainty = out.uncertainty;
+        room_uncertainties = {out.uncertainty};
         return;
     }
-    std::vector<SampleSums> sums(count);
+    std::vector<SampleSums>& sums = room_sums;
     for (std::size_t k = 0; k < samples.size(); ++k) sums[samples[k].room].add(samples[k], samples[k].weight, k);
     for (const ResidualSample& s : samples) {
         if (!is_rough(s, s.weight, sums[s.room], light_of_room(s.room))) continue;
         sums[s.room].rough += s.weight * mean(s.local1 * s.local2);
         out.rough_places.push_back(rough_place(s));
     }
-    rooms.clear();
     for (std::size_t room = 0; room < count; ++room) {
         const double light_there = light_of_room(room);
         for (double& square : sums[room].squared) square /= sums[room].weight > 0 ? sums[room].weight : 1;
         const BatchMean error(sums[room].squared);
         const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
         rooms.push_back({stage.rooms.area(room), found[room], estimate, light_there});
-        if (estimate <= out.worst_room) continue;
-        out.worst_room = estimate;
-        out.room_uncertainty = 0.5 * error.standard_error / (estimate * light_there * light_there);
-        if (estimate <= out.estimate) continue;
-        out.largest_room = room, out.largest_light = light_there;
-        if (sums[room].divided_weight > 0) sums[room].set_parts(out, light_there);
+        room_uncertainties.push_back(estimate > 0 ? 0.5 * error.standard_error / (estimate * light_there * light_there)
+                                                  : 0);
     }
+}
+
+/// Finds the worst room, and sets the parts of the error where it is largest: in the whole scene or in that room.
+void Certifier::Content::choose_largest(Certificate& out) const {
+    const auto worst = std::max_element(rooms.begin(), rooms.end(),
+                                        [](const RoomError& x, const RoomError& y) { return x.error < y.error; });
+    const auto room = static_cast<std::size_t>(worst - rooms.begin());
+    out.worst_room = worst->error, out.room_uncertainty = room_uncertainties[room];
+    out.largest_room.reset(), out.largest_light = out.mean_reflected, out.again = factors.whole;
+    if (options.gathered) whole_sums.set_parts(out, out.mean_reflected);
+    if (room_sums.empty() || out.worst_room <= out.estimate) return;
+    out.largest_room = room, out.largest_light = worst->reference, out.again = factor_of_room(room);
+    if (room_sums[room].divided_weight > 0) room_sums[room].set_parts(out, worst->reference);
 }
 
 /// Returns the mean reflected radiosity of the true light, to which errors are relative, W/m^2: that of the method's
@@ -244,7 +235,7 @@ Certificate Certifier::Content::judge() {
         sums.rough += s.weight / count * mean(s.local1 * s.local2);
         if (stage.rooms.count() == 0) out.rough_places.push_back(rough_place(s));
     }
-    if (options.gathered) sums.set_parts(out, out.mean_reflected);
+    whole_sums = sums, factors = {};
     const BatchMean residual(residual_squared), error(sums.squared);
     const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
     out.residual = std::sqrt(std::max(0.0, residual.mean)) / out.mean_reflected;
@@ -254,6 +245,7 @@ Certificate Certifier::Content::judge() {
         out.uncertainty = 0.5 * error.standard_error / (out.estimate * out.mean_reflected * out.mean_reflected);
     out.bound = std::max(out.estimate, out.constant * std::sqrt(upper) / out.mean_reflected);
     judge_rooms(out);
+    choose_largest(out);
     return out;
 }
 
@@ -290,30 +282,31 @@ void Certifier::Content::measure_each_body(Certificate& out) {
         MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
         bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
         out.hidden = found.hidden;
-        for (std::size_t body = 0; body < factors_of_bodies.size(); ++body)
-            if (bodies[body].error) *bodies[body].error *= factors_of_bodies[body];
+        for (BodyError& body : bodies) {
+            const double factor = factor_of_body(body.first);
+            if (body.error) *body.error *= factor, body.at_least *= factor;
+        }
     }
     for (const BodyError& body : bodies)
         if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
 }
 
-/// Multiplies the errors of the whole, of rooms and of bodies by the factors that paths find, where light is reflected
-/// between near surfaces. Returns these factors.
-ErrorFactors Certifier::Content::raise_by_paths(const LatePaths& by_paths, Certificate& out) {
-    ErrorParted parts;
-    for (std::size_t room = 0; room < rooms.size(); ++room) parts.light_of_room.push_back(rooms[room].reference);
+/// Measures the factors on the errors of the scene, its rooms and its bodies (`measure_error_factors`), and multiplies
+/// the first two by them. Returns the mean square of the light that they add, (W/m^2)^2.
+double Certifier::Content::raise_by_paths(const LatePaths& by_paths, Certificate& out) {
+    ErrorDomains domains{.max_factor = response.constant()};
+    for (const RoomError& room : rooms) domains.light_of_room.push_back(room.reference);
     if (options.bodies && options.bodies->all.size() > 1) {
-        parts.bodies = options.bodies->all.size();
-        for (const ResidualSample& s : samples)
-            parts.body_of.push_back(static_cast<std::uint32_t>(options.bodies->of(stage.scene, s.region)));
+        domains.bodies = options.bodies->all.size();
+        for (const ResidualSample& s : samples) domains.body_of.push_back(options.bodies->of(stage.scene, s.region));
     }
-    ErrorFactors found = measure_error_factors(by_paths, samples, late, parts, options.seed, options.check_rays / 2);
-    out.rays += found.rays;
-    out.again = found.whole, out.estimate *= found.whole, out.uncertainty *= found.whole;
+    factors = measure_error_factors(by_paths, samples, late, domains, options.seed, options.check_rays / 2);
+    out.rays += factors.rays;
+    out.estimate *= factors.whole, out.uncertainty *= factors.whole;
     out.bound = std::max(out.bound, out.estimate);
-    for (std::size_t room = 0; room < rooms.size(); ++room) rooms[room].error *= found.rooms[room];
-    factors_of_bodies = found.bodies;
-    return found;
+    for (std::size_t room = 0; room < rooms.size(); ++room)
+        rooms[room].error *= factors.rooms[room], room_uncertainties[room] *= factors.rooms[room];
+    return factors.explained;
 }
 
 /// Adds the error that arrives by further reflections and that the coarse response misses, if traced paths find it
@@ -321,19 +314,16 @@ ErrorFactors Certifier::Content::raise_by_paths(const LatePaths& by_paths, Certi
 void Certifier::Content::check_by_paths(Certificate& out) {
     if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
     const LatePaths by_paths(stage, indirect, b, check, plans, options.direct_in_elements, options.stop);
-    const ErrorFactors factors = raise_by_paths(by_paths, out);
-    const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
+    const double explained = raise_by_paths(by_paths, out);
+    LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
     out.rays += misfit.rays;
+    misfit.mean_square -= explained;
     if (misfit.is_significant()) {
-        const double more = std::sqrt(std::max(0.0, misfit.mean_square - factors.explained)) / out.mean_reflected;
+        const double more = std::sqrt(misfit.mean_square) / out.mean_reflected;
         out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
     }
     if (stage.rooms.count() == 0) rooms[0].error = out.estimate;
-    const auto worst = std::max_element(rooms.begin(), rooms.end(),
-                                        [](const RoomError& x, const RoomError& y) { return x.error < y.error; });
-    out.worst_room = worst->error;
-    if (stage.rooms.count() == 0 || out.worst_room <= out.estimate) return;
-    out.largest_room = static_cast<std::size_t>(worst - rooms.begin()), out.largest_light = worst->reference;
+    choose_largest(out);
 }
 
 void Certifier::Content::measure_p99(Certificate& out) {
@@ -376,7 +366,7 @@ void Certifier::Content::measure_p99(Certificate& out) {
             [&](std::size_t k) -> TwoErrors& { return error[k]; }, {"certificate"});
     };
     const double found = error_below(points, rays, mean_square, share, by_more_rays);
-    if (found > 0) out.p99 = out.again * found / mean_reflected;
+    if (found > 0) out.p99 = factors.whole * found / mean_reflected;
 }
 
 Certifier::Certifier(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
@@ -395,13 +385,15 @@ std::vector<FaceError> Certifier::surface_errors() const {
     // The points of bodies that were measured at further points check direct light at more hits. If a face has enough
     // of them, they replace its other points.
     std::vector<PointError> points = c.body_points;
+    for (PointError& p : points) p.squared *= std::pow(c.factor_of_body(p.surface), 2);
     Field<SurfaceId, std::size_t> close(scene.surfaces().size(), 0);
     for (const PointError& p : points) ++close[p.surface];
     std::erase_if(points, [&](const PointError& p) { return close[p.surface] < BodyMeasure::min_points; });
     for (const ResidualSample& s : c.samples) {
         if (close[s.surface] >= BodyMeasure::min_points) continue;
         const double light_there = c.rooms[s.room].reference;
-        points.push_back({s.surface, s.weight, s.squared / (light_there * light_there)});
+        const double factor = c.factor_of_room(s.room) / light_there;
+        points.push_back({s.surface, s.weight, factor * factor * s.squared});
     }
     std::vector<double> of_rooms;
     for (SurfaceId s : scene.surfaces().ids()) {

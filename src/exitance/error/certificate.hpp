@@ -57,7 +57,7 @@ struct CertificateOptions {
     std::vector<double> allowed_in = {};
     /// Projection of direct light that `b` reads at ray hits, to be checked there; empty if `b` reads none.
     ProjectedDirect projected = {};
-    /// Limit on the rays for measuring bodies; half as many more may check the smooth part of the error by paths.
+    /// Limit on the rays for measuring bodies; about as many more check the smooth part of the error by paths.
     std::size_t check_rays = 1 << 16;
     /// Bodies whose errors are reported; null: none.
     const SceneBodies* bodies = nullptr;
@@ -83,7 +83,8 @@ struct Certificate {
     /// Part of `local` at single points at which the error is a notable share of the allowed error, and these points.
     double rough = 0;
     std::vector<RoughPlace> rough_places = {};
-    /// Factor by which light that near surfaces reflect to each other raised `estimate`; 1 until `check_by_paths`.
+    /// Factor by which `check_by_paths` multiplied the largest() error, since near surfaces reflect errors to each
+    /// other and the coarse response misses that. 1: not checked, or nothing found.
     double again = 1;
     double constant = 1;        ///< Ratio of the error bound to ||r||.
     double mean_reflected = 0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2; errors are relative to it.

@@ -29,13 +29,9 @@ LatePaths::LatePaths(const Stage& stage, const ElementFunction& indirect, const 
 
 /// Returns one sample of the residual of irradiance at a vertex.
 Spectrum LatePaths::residual(const SurfacePoint& y, RandomStream& random, Workspace& w, std::size_t& rays) const {
-    SurfacePoint arriving = y;
-    // Light that leaves a diffusing pane arrived on either side.
-    if (const RegionId behind = stage_.scene.behind(y.region); !behind.is_none())
-        if (random.uniform() < stage_.scene.material(y.region).through) arriving = SurfacePoint{y.x, -y.n, behind};
     const CheckPlan& plan = plans_[stage_.rooms.count() > 0 ? stage_.rooms.at(y.region, y.x) : 0];
     const std::uint64_t key = random.bits();
-    cast_gather(stage_, arriving.x, arriving.n, arriving.region, rays_at_vertex, key, b_.bright_places(), w.rays);
+    cast_gather(stage_, y.x, y.n, y.region, rays_at_vertex, key, b_.bright_places(), w.rays);
     Spectrum found = read_gather(b_, w.rays).irradiance + check_.missing(plan, w.rays, key, w.check) -
                      indirect_.at(locator_.find(y.region, y.x));
     rays += rays_at_vertex + static_cast<std::size_t>(plan.work * rays_at_vertex);
@@ -55,7 +51,8 @@ Spectrum LatePaths::sample(const SurfacePoint& x, double a, double b, RandomStre
         if (survival <= 0 || random.uniform() >= survival) return sum;
         throughput *= rho / survival * y->colour;
         sum += throughput * residual(y->at, random, w, rays);
-        y = check_.paths().step(y->at, random).next;
+        const double u = random.uniform(), v = random.uniform();
+        y = check_.paths().first(y->at, u, v);
         ++rays;
     }
     return sum;
@@ -72,13 +69,13 @@ double LatePaths::rays_per_path() const {
 LateMisfit LatePaths::misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late,
                              std::uint64_t seed, std::size_t max_rays) const {
     constexpr double max_places = 128;
-    constexpr std::uint32_t min_paths = 2, max_paths = 16, paths_again = 4 * max_paths;
+    constexpr double min_paths = 2, max_paths = 16, more_again = 4;
     const double places = std::min(max_places, static_cast<double>(samples.size()));
-    const auto paths = static_cast<std::uint32_t>(
-        std::clamp(static_cast<double>(max_rays) / (2 * rays_per_path() * places), 1.0 * min_paths, 1.0 * max_paths));
-    const LateMisfit first = measure(samples, late, seed, paths);
+    const double affordable = static_cast<double>(max_rays) / (2 * rays_per_path() * places);
+    const double paths = std::clamp(affordable, min_paths, max_paths);
+    const LateMisfit first = measure(samples, late, seed, static_cast<std::uint32_t>(paths));
     if (!first.is_significant()) return first;
-    LateMisfit again = measure(samples, late, hash(seed), paths_again);
+    LateMisfit again = measure(samples, late, hash(seed), static_cast<std::uint32_t>(more_again * paths));
     again.rays += first.rays;
     return again;
 }
@@ -129,16 +126,18 @@ LateMisfit LatePaths::measure(std::span<const ResidualSample> samples, std::span
 }
 
 std::vector<CorrelationTerm> LatePaths::correlation(std::span<const ResidualSample> samples,
-                                                    std::span<const double> counted, std::span<const Spectrum> late,
-                                                    std::uint64_t seed, std::size_t max_rays, std::size_t& rays) const {
-    // The noise of a path is assumed to be in proportion to the light at its end.
+                                                    std::span<const double> weight_of_place,
+                                                    std::span<const Spectrum> late, std::uint64_t seed,
+                                                    std::size_t max_rays, std::size_t& rays) const {
+    // The noise of a path is assumed to be proportional to the light delivered at the place.
     std::vector<double> running(samples.size());
     double total = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const ResidualSample& s = samples[k];
         const Spectrum& rho = stage_.scene.material(s.region).reflectance;
         if (!s.is_covered)
-            total += counted[k] * rms_over_bands(s.r1 + s.r2 + 2 * late[s.leaf]) * rms_over_bands(rho * s.delivered);
+            total +=
+                weight_of_place[k] * rms_over_bands(s.r1 + s.r2 + 2 * late[s.leaf]) * rms_over_bands(rho * s.delivered);
         running[k] = total;
     }
     const auto count = static_cast<std::size_t>(static_cast<double>(max_rays) / rays_per_path());

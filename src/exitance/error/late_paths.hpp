@@ -56,14 +56,15 @@ class LatePaths {
     LateMisfit misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late, std::uint64_t seed,
                       std::size_t max_rays) const;
 
-    /// Measures how the light of paths that the coarse response lacks follows the error at the same place. Between the
-    /// slats of a blind, a wrong light is reflected back to where it came from, so that both have the same sign. Few
-    /// paths resolve this product, since it is linear in their noise, while the square that `misfit` measures is not.
-    /// Places receive paths in proportion to their error and light, and to `counted`, which has one entry per sample.
-    /// Casts about `max_rays` rays, which are added to `rays`. The sum of all terms is unbiased.
-    std::vector<CorrelationTerm> correlation(std::span<const ResidualSample> samples, std::span<const double> counted,
-                                             std::span<const Spectrum> late, std::uint64_t seed, std::size_t max_rays,
-                                             std::size_t& rays) const;
+    /// Measures the product of the error e at a place with the light m that the coarse response lacks there. Between
+    /// slats both have the same sign, since light is reflected back to where it came from. Few paths resolve the
+    /// product, since it is linear in their noise, while the square that `misfit` measures is not. Places are chosen
+    /// with a probability proportional to their error, the light delivered there, and `weight_of_place`, which has one
+    /// entry per sample. The sum of the terms is unbiased for places that receive light. Casts about `max_rays` rays,
+    /// which are added to `rays`.
+    std::vector<CorrelationTerm> correlation(std::span<const ResidualSample> samples,
+                                             std::span<const double> weight_of_place, std::span<const Spectrum> late,
+                                             std::uint64_t seed, std::size_t max_rays, std::size_t& rays) const;
 
   private:
     Spectrum residual(const SurfacePoint& y, RandomStream& random, Workspace& w, std::size_t& rays) const;

@@ -101,8 +101,8 @@ class ContactCutter {
         }
     }
 
-    /// Returns the lines that may split the part between a line of a strip and its mouth. Strips of other mouths do
-    /// not: with three mouths of three strips each, a face would have 28 parts instead of 10.
+    /// Returns the lines that may split the part between a line of a strip and its mouth: all but the strips of mouths
+    /// across to it. With three mouths of three strips each, a face would have 28 parts instead of 10.
     static Lines lines_of_strip(const Lines& around, const ContactLines::Line& strip) {
         Lines out;
         for (const ContactLines::Line& line : around)

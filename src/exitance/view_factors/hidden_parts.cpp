@@ -235,6 +235,10 @@ HiddenParts::HiddenParts(const Occluders& occluders, std::span<const ViewFace> f
     if (any_crossed) add_sections(occluders, tree, bodies);
     for (std::size_t i = 0; i < faces.size(); ++i)
         is_met_[i] = std::any_of(parts_[i].begin(), parts_[i].end(), [](const HiddenPart& p) { return !p.by_solid; });
+    has_uncovered_.resize(faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        has_uncovered_[i] =
+            std::any_of(parts_[i].begin(), parts_[i].end(), [](const HiddenPart& p) { return !p.is_covered; });
 }
 
 void HiddenParts::add_covers(const Occluders& occluders, const Bvh& tree) {
@@ -285,9 +289,10 @@ void HiddenParts::add_sections(const Occluders& occluders, const Bvh& tree, cons
 }
 
 bool HiddenParts::contains_uncovered(std::size_t face, const Point& x) const {
-    return has(face) && std::any_of(parts_[face].begin(), parts_[face].end(), [&](const HiddenPart& part) {
-               return !part.is_covered && contains(part.outline, faces_[face].plane.n, x);
-           });
+    if (!has(face) || !has_uncovered_[face]) return false;
+    return std::any_of(parts_[face].begin(), parts_[face].end(), [&](const HiddenPart& part) {
+        return !part.is_covered && contains(part.outline, faces_[face].plane.n, x);
+    });
 }
 
 bool HiddenParts::matters(const HiddenPart& part, const ViewFace& other) const {

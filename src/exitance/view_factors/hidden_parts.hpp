@@ -52,8 +52,8 @@ class HiddenParts {
 
     std::span<const ViewFace> faces_;
     double slack_ = 0;
-    std::vector<std::vector<HiddenPart>> parts_;  ///< One list per face; empty if no face has hidden parts.
-    std::vector<std::uint8_t> is_met_;
+    std::vector<std::vector<HiddenPart>> parts_;        ///< One list per face; empty if no face has hidden parts.
+    std::vector<std::uint8_t> is_met_, has_uncovered_;  ///< One entry per face; empty like `parts_`.
 };
 
 }  // namespace exitance

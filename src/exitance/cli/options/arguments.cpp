@@ -293,6 +293,7 @@ std::vector<VerbFacts> facts_of_verbs() {
 Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     if (arguments.empty()) return Error{ErrorCode::usage, "a verb is missing", "", "exitance --help lists the verbs"};
     const std::string& first = arguments.front();
+    if (first == "help" && arguments.size() > 1) return parse_arguments({arguments[1], "--help"});
     if (first == "--help" || first == "-h" || first == "help") return Parsed(Information{help()});
     if (first == "--version")
         return Parsed(Information{fmt::format("exitance {}\n{}\n", program_version, program_libraries)});

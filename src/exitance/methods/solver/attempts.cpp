@@ -105,7 +105,7 @@ void StandardSolver::solve_indirect_light() {
             return stop_early(StopReason::time_limit);
         }
         if (!next->forecast.empty()) progress_.note(next->forecast);
-        progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: {}", 100 * certificate_.largest(), 100 * *demand,
+        progress_.note(fmt::format("{}: {}", reason_for_attempt(*demand),
                                    next->is_step        ? "refining the delivered elements"
                                    : next->finer.method ? "solving again with finer elements"
                                                         : "refining the gather; the method's light is kept"));
@@ -119,6 +119,13 @@ void StandardSolver::solve_indirect_light() {
             if (!fits || !*fits) return stop_early(StopReason::memory_limit);
         }
     }
+}
+
+std::string StandardSolver::reason_for_attempt(double demand) const {
+    const double found = 100 * certificate_.largest();
+    if (found > 100 * demand) return fmt::format("estimated error {:.2f}% > {:.2f}%", found, 100 * demand);
+    return fmt::format("estimated error {:.2f}%, uncertain by {:.2f}%, is too close to {:.2f}%", found,
+                       100 * certificate_.largest_uncertainty(), 100 * demand);
 }
 
 void StandardSolver::attempt() {
@@ -188,14 +195,14 @@ ErrorParts StandardSolver::error_parts() const {
     const LocalPassReport::Parts told =
         room && *room < gathered_.rooms.size() ? gathered_.rooms[*room] : gathered_.whole;
     const double parts = std::hypot(certificate_.local, certificate_.method), all = certificate_.largest();
-    const double cancels = parts > all ? all / parts : certificate_.again;
+    const double scale = parts > 0 ? std::min(certificate_.again, all / parts) : certificate_.again;
     const double spread = std::sqrt(std::max(0.0, std::pow(certificate_.local, 2) - std::pow(certificate_.rough, 2)));
-    const double local = cancels * spread, noise = certificate_.again * told.noise / certificate_.largest_light;
+    const double local = scale * spread, noise = certificate_.again * told.noise / certificate_.largest_light;
     const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
     const double seen = certificate_.again * told.interpolation / certificate_.largest_light;
     // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
     constexpr double min_hidden_ratio = 3;
-    return {.method = cancels * certificate_.method,
+    return {.method = scale * certificate_.method,
             .noise = misfit > min_hidden_ratio * seen ? std::max(noise, misfit) : noise,
             .interpolation = std::max(misfit, seen)};
 }

@@ -69,8 +69,12 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
     for (std::size_t left = demand ? more() : 0; left > 0 && !stop_.requested(); --left)
         certificate_ = certifier.measure(left - 1);
     const double noise = direct_light_noise_share();
+    Certificate by_paths = certificate_;
     certificate_.add_independent_error(noise);
-    if (!demand || may_be_last(*demand)) certifier.check_by_paths(certificate_);
+    if (!demand || may_be_last(*demand)) {
+        certifier.check_by_paths(by_paths);
+        certificate_ = by_paths, certificate_.add_independent_error(noise);
+    }
     if (!demand || may_be_last(*demand)) {
         certifier.measure_each_body(certificate_);
         certifier.measure_p99(certificate_);

@@ -41,6 +41,8 @@ class StandardSolver final : public Solver {
     void solve_indirect_light();
     /// Makes one attempt. Keeps the results of the previous one as far as they are accurate enough.
     void attempt();
+    /// Returns why the light of the last attempt does not suffice, for a message.
+    std::string reason_for_attempt(double demand) const;
     /// Seed of the points at which an attempt is measured: one per attempt, since the previous ones decided how it
     /// refines.
     std::uint64_t certificate_seed() const;
