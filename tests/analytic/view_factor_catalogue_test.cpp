@@ -6,11 +6,10 @@
 #include <functional>
 
 #include "support/dense_view_factors.hpp"
+#include "support/outline_scene.hpp"
 
 namespace exitance {
 namespace {
-
-using Outline = std::vector<Point>;
 
 /// A scene of polygons, with pairs of faces and their exact factors.
 struct Configuration {
@@ -33,21 +32,6 @@ void place(Configuration& c, int number) {
             const Vec3 r{q.x, std::cos(b) * q.y - std::sin(b) * q.z, std::sin(b) * q.y + std::cos(b) * q.z};
             p = Point(scale * (r + Vec3{3.0 + number, -2, 5}));
         }
-}
-
-Scene scene_of(const std::vector<Outline>& outlines) {
-    SceneDescription d;
-    d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
-    d.groups.push_back("all");
-    for (const Outline& outline : outlines) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(face);
-    }
-    return *make_scene(d).scene;
 }
 
 /// A rectangle in the plane z, front upwards or downwards.

@@ -11,27 +11,11 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "support/dense_view_factors.hpp"
+#include "support/outline_scene.hpp"
 #include "support/places.hpp"
 
 namespace exitance {
 namespace {
-
-using Outline = std::vector<Point>;
-
-Scene scene_of_faces(const std::vector<Outline>& outlines) {
-    SceneDescription d;
-    d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
-    d.groups.push_back("all");
-    for (const Outline& outline : outlines) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(face);
-    }
-    return *make_scene(d).scene;
-}
 
 ViewFactors factors_of(const Scene& scene, double tolerance) {
     return dense_view_factors(scene, tolerance);
@@ -62,13 +46,13 @@ Scene room_with_blocks() {
     add_box(faces, {0, 0, 0}, {4, 3, 2.5}, true, 3);
     add_box(faces, {0.7, 0.6, 0.2}, {1.5, 1.4, 1.1}, false, 2);
     add_box(faces, {2.3, 1.1, 0.1}, {3.2, 2.2, 1.4}, false, 1);
-    return scene_of_faces(faces);
+    return scene_of(faces);
 }
 
 TEST(EntryFactors, RowsOfABoxSumToOneAndAreReciprocal) {
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {5, 4, 3}, true, 2);
-    const ViewFactors table = factors_of(scene_of_faces(faces), 1e-9);
+    const ViewFactors table = factors_of(scene_of(faces), 1e-9);
     for (double sum : table.row_sums) EXPECT_NEAR(sum, 1, 1e-8);  // entries have a tolerance of 1e-9
     EXPECT_LT(table.reciprocity_defect, 1e-8);
     EXPECT_EQ(table.emittances[0], 0.75);
@@ -93,7 +77,7 @@ TEST(EntryFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
     }
     add_box(faces, {0.5, 0.5, 0}, {0.6, 0.62, 0.5}, false, 1);
     const double tolerance = 4e-3;
-    const ViewFactors table = factors_of(scene_of_faces(faces), tolerance);
+    const ViewFactors table = factors_of(scene_of(faces), tolerance);
     for (std::size_t i = 0; i < table.size(); ++i) {
         const bool covered = std::abs(table.row_sums[i]) < 1e-12;  // the bottom of the block on the floor
         const double stands = i == 4 ? 0.1 * 0.12 / 4 : 0;         // share of the floor that the block covers
@@ -134,7 +118,7 @@ Scene room_with_a_stool() {
     prism(leg, lifted(leg, 0.41), faces);  // faces 4 to 7
     prism(lifted(seat, 0.41), seat, faces);
     prism(turned(floor), turned(ceiling), faces);
-    return scene_of_faces(faces);
+    return scene_of(faces);
 }
 
 TEST(EntryFactors, SumToOneForALegUnderAnOverhangingSeatBetweenSlantingWalls) {
@@ -163,7 +147,7 @@ TEST(EntryFactors, AreReciprocalForAWallCloselyBehindBoards) {
             add_box(faces, lo, lo + Vec3{0.02, 0.31, 0.17}, false, 1);
         }
     const double tolerance = 2e-3;
-    const ViewFactors table = factors_of(scene_of_faces(faces), tolerance);
+    const ViewFactors table = factors_of(scene_of(faces), tolerance);
     for (double sum : table.row_sums) EXPECT_NEAR(sum, 1, tolerance);
     EXPECT_LT(table.reciprocity_defect, tolerance);
 }
@@ -184,7 +168,7 @@ Scene town_of_boxes() {
             };
             tile(10, 0), tile(0, 10), tile(10, 10);
         }
-    return scene_of_faces(faces);
+    return scene_of(faces);
 }
 
 /// Expects entries above 1e-6 to agree with those of a finer table within the relative error `share`. Returns their
@@ -218,7 +202,7 @@ TEST(EntryFactors, EntriesOfAFurnishedRoomAreWithinTheTolerance) {
     for (const double x : {1.25, 2.49})
         for (const double y : {0.95, 1.79}) add_box(faces, {x, y, 0}, {x + 0.06, y + 0.06, 0.7}, false, 1);
     add_box(faces, {1.6, 1.2, 0}, {2.1, 1.5, 0.3}, false, 1);
-    const Scene scene = scene_of_faces(faces);
+    const Scene scene = scene_of(faces);
     const double tolerance = 4e-3;
     const ViewFactors coarse = factors_of(scene, tolerance), fine = factors_of(scene, 0.1 * tolerance);
     EXPECT_GT(entries_within(1.1 * tolerance, coarse, fine), 300U);  // the finer table has errors, too
@@ -231,7 +215,7 @@ TEST(EntryFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
     add_box(whole, {0, 0, 0}, {4, 3, 2.5}, true, 1);
     add_box(cut, {0, 0, 0}, {4, 3, 2.5}, true, 2);
     for (auto* faces : {&whole, &cut}) add_box(*faces, {1.2, 0.8, 0.3}, {2.5, 1.9, 1.2}, false, 1);
-    const ViewFactors w = factors_of(scene_of_faces(whole), 1e-6), c = factors_of(scene_of_faces(cut), 1e-6);
+    const ViewFactors w = factors_of(scene_of(whole), 1e-6), c = factors_of(scene_of(cut), 1e-6);
     for (std::size_t wall = 0; wall < 6; ++wall)
         for (std::size_t face = 0; face < 6; ++face) {
             double column = 0, row = 0;
@@ -280,7 +264,7 @@ TEST(EntryFactors, ReproduceThePublishedPairsWithBlockers) {
         if (c["kind"] != "polygon-polygon" || c["occluders"].empty()) continue;
         std::vector<Outline> faces = {outline_of(c["a"]), outline_of(c["b"])};
         for (const auto& o : c["occluders"]) faces.push_back(outline_of(o));
-        const Scene scene = scene_of_faces(faces);
+        const Scene scene = scene_of(faces);
         const double exact = c["F_ab"], back = c["F_ba"];
         const ViewFactors fine = factors_of(scene, 1e-9), coarse = factors_of(scene, 1e-4);
         EXPECT_NEAR(fine.row(0)[1] / exact, 1, 1e-7) << c["id"];
@@ -294,7 +278,7 @@ TEST(EntryFactors, ReproduceThePublishedEnclosures) {
     for (const auto& e : published_table["enclosures"]) {
         std::vector<Outline> faces;
         for (const auto& face : e["surfaces"]) faces.push_back(outline_of(face["polygon"]));
-        const ViewFactors table = factors_of(scene_of_faces(faces), 1e-8);
+        const ViewFactors table = factors_of(scene_of(faces), 1e-8);
         for (std::size_t i = 0; i < faces.size(); ++i) {
             EXPECT_NEAR(table.row_sums[i], 1, 1e-6) << e["id"];
             for (std::size_t j = 0; j < faces.size(); ++j)

@@ -9,11 +9,11 @@
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/row_factors.hpp"
 #include "support/dense_view_factors.hpp"
+#include "support/outline_scene.hpp"
 
 namespace exitance {
 namespace {
 
-using Outline = std::vector<Point>;
 using Outlines = std::vector<Outline>;
 
 /// Adds the faces of a prism over a polygon, which is counter-clockwise seen from above: bottom, top, sides.
@@ -57,19 +57,10 @@ const std::vector<Transform>& transforms() {
     return all;
 }
 
-Scene scene_of(const Outlines& outlines, const Transform& transform) {
-    SceneDescription d;
-    d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
-    d.groups.push_back("all");
-    for (const Outline& outline : outlines) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(transform(p));
-        }
-        d.faces.push_back(face);
-    }
-    return *make_scene(d).scene;
+Scene transformed_scene(Outlines outlines, const Transform& transform) {
+    for (Outline& outline : outlines)
+        for (Point& p : outline) p = transform(p);
+    return scene_of(outlines);
 }
 
 SparseFactors rows_of(const Scene& scene) {
@@ -86,7 +77,7 @@ struct Expected {
 void expect_sums(const Outlines& outlines, const std::vector<Expected>& expected, std::size_t step = 1) {
     for (std::size_t k = 0; k < transforms().size(); k += step) {
         SCOPED_TRACE(k);
-        const Scene scene = scene_of(outlines, transforms()[k]);
+        const Scene scene = transformed_scene(outlines, transforms()[k]);
         const ViewFactors table = dense_view_factors(scene, 1e-3);
         const SparseFactors rows = rows_of(scene);
         for (const auto& [face, sum] : expected) {
@@ -106,7 +97,7 @@ Outlines touching(double height) {
 
 TEST(HiddenParts, ABoxBesideAnotherHidesTheCoveredHalfOfItsSide) {
     expect_sums(touching(0.5), {{0, 0.9}, {1, 1}, {6, 0}, {9, 0.5}, {12, 0}, {13, 1}, {17, 0}});
-    const Scene scene = scene_of(touching(0.5), transforms()[0]);
+    const Scene scene = scene_of(touching(0.5));
     const Outline upper_half = {{2, 1, 0.5}, {2, 2, 0.5}, {2, 2, 1}, {2, 1, 1}};
     const double exact = 0.5 * pair_form_factor(upper_half, touching(0.5)[13]);
     EXPECT_NEAR(dense_view_factors(scene, 1e-4).row(9)[13], exact, 1e-6);
@@ -164,7 +155,7 @@ TEST(HiddenParts, NeitherRoomsNorTwoSidedSheetsHaveAny) {
     faces.push_back(sheet);
     std::reverse(sheet.begin(), sheet.end());
     faces.push_back(sheet);
-    const Scene scene = scene_of(faces, turned);
+    const Scene scene = transformed_scene(faces, turned);
     const Occluders occluders(scene);
     const std::vector<ViewFace> view_faces = make_view_faces(scene);
     const HiddenParts parts(occluders, view_faces, 1e-7);

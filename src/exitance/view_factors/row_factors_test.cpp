@@ -10,26 +10,10 @@
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/row_check.hpp"
 #include "support/dense_view_factors.hpp"
+#include "support/outline_scene.hpp"
 
 namespace exitance {
 namespace {
-
-using Outline = std::vector<Point>;
-
-Scene scene_of(const std::vector<Outline>& outlines) {
-    SceneDescription d;
-    d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
-    d.groups.push_back("all");
-    for (const Outline& outline : outlines) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(face);
-    }
-    return *make_scene(d).scene;
-}
 
 /// Adds the six faces of a rotated box, with fronts inwards or outwards.
 void add_box(std::vector<Outline>& faces, const Point& middle, const Vec3& size, double turn, bool inwards) {
