@@ -57,7 +57,9 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
         const Point middle = centroid(corners);
         double of_piece = 0;
         for (const Point& corner : corners) {
+            const double along = dot(out.axis, corner - out.centre);
             out.radius = std::max(out.radius, norm(corner - out.centre));
+            out.lowest = std::min(out.lowest, along), out.highest = std::max(out.highest, along);
             // exact for a square: r^2 / 3
             of_piece += squared_norm(corner - middle) / static_cast<double>(3 * corners.size());
         }
@@ -112,6 +114,18 @@ double EmitterTree::exact(const Node& leaf, const SurfacePoint& at) const {
     return point_to_polygon(at.x, at.n, occluders.corners(source.name.piece)) * mean(emitter.exitance);
 }
 
+/// True if the sources are so flat that none shines on a place, or is above its horizon, although a ball around them
+/// is: as for places beside lamps in one plane, and behind them. `d`: from the place to the cluster's centre; `up`: n .
+/// d.
+bool EmitterTree::is_flat_behind(const Node& node, const Normal& n, const Vec3& d, double up) const {
+    // The place is behind a source with normal m at y if m . (x - y) <= 0; m is within the cone around the axis.
+    const double reach = norm(d) + node.radius;
+    if ((-dot(node.axis, d) - node.lowest) * node.cosine + reach * node.sine <= 0) return true;
+    // The corners are within a disk of that radius, and between two planes across the axis.
+    const double tilt = dot(n, node.axis), across = std::sqrt(std::max(0.0, 1 - tilt * tilt));
+    return up + std::max(tilt * node.lowest, tilt * node.highest) + across * node.radius <= 0;
+}
+
 /// From far away a cluster is treated as one source at its centre, with its mean normal m:
 ///
 ///     L = P (n . d) (-m . d) / (pi d^4),
@@ -123,7 +137,7 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const SurfacePoint&
     const Node& node = nodes_[number];
     const Vec3 d = node.centre - at.x;
     const double d2 = squared_norm(d), distance = std::sqrt(d2), up = dot(at.n, d);
-    if (up <= -node.radius) return {number, 0, 0};
+    if (up <= -node.radius || is_flat_behind(node, at.n, d, up)) return {number, 0, 0};
     // Derived from a bound that is finite, and so large that clusters around the point are split first.
     constexpr double min_nearness = 0.1;
     const double nearest = std::max(distance - node.radius, min_nearness * node.radius);
