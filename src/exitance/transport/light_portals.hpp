@@ -13,6 +13,12 @@ class LightPortals {
     explicit LightPortals(std::vector<std::vector<PortalCell>> by_room) : by_room_(std::move(by_room)) {}
     std::span<const PortalCell> of_room(std::size_t room) const { return by_room_[room]; }
     bool empty() const;
+    /// The openings by rooms with other numbers: those of room k are the ones of room before[k].
+    std::shared_ptr<const LightPortals> renumbered(std::span<const std::size_t> before) const {
+        std::vector<std::vector<PortalCell>> by_room;
+        for (const std::size_t room : before) by_room.push_back(by_room_[room]);
+        return std::make_shared<const LightPortals>(std::move(by_room));
+    }
 
   private:
     std::vector<std::vector<PortalCell>> by_room_;

@@ -6,6 +6,7 @@
 
 #include "exitance/base/error_share.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/transport/body_surroundings.hpp"
 #include "exitance/transport/light_openings.hpp"
 #include "exitance/transport/light_portals.hpp"
 #include "exitance/transport/room_borders.hpp"
@@ -95,7 +96,9 @@ void LightRooms::weigh(const ElementTree& tree, const LeafNumbering& numbering, 
 LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
     constexpr std::size_t elements = 600;  // number of elements in addition to one per piece
     const std::vector<Piece> pieces = stage.lit_pieces();
-    const ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
+    ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
+    const auto surroundings = std::make_shared<const BodySurroundings>(stage);
+    surroundings->refine(tree);
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
     const bool has_sky = !stage.scene.distant().domes.empty();
@@ -108,29 +111,44 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     if (has_sky)
         while (rays.min < max_room_rays && 2 * rays.min * numbering.leaves.size() <= rays_outdoors) rays.min *= 2;
     const RayRows rows(stage, {tree, numbering, *locator}, {rays, seed}, &stop);
-    const std::vector<LeafNumbers> rooms = find_room_leaves({stage, tree, numbering, rows, rows.escaped()}, seed, stop);
+    const std::vector<std::uint32_t> escaped = rows.escaped();
+    const std::vector<LeafNumbers> rooms = find_room_leaves({stage, tree, numbering, rows, escaped}, seed, stop);
     LightRooms out;
     if (stop.requested()) return out;  // rows that were not cast have no information
     const std::vector<double> kept = rows.kept();
     const bool loses = std::any_of(kept.begin(), kept.end(), [](double share) { return share < 1; });
-    if (rooms.size() < 2 && !loses) return out;
+    if (rooms.size() < 2 && !loses && surroundings->are_empty()) return out;
     out.lost_.resize(tree.size());
     for (std::size_t i = 0; i < kept.size(); ++i) out.lost_[numbering.leaves[i]] = static_cast<float>(1 - kept[i]);
     out.locator_ = std::move(locator);
     share_on_node(out.lost_.span()), share_on_node(out.locator_->leaves());
-    if (rooms.size() < 2) return out;
     std::vector<std::size_t> room_of(numbering.leaves.size());
     for (std::size_t room = 0; room < rooms.size(); ++room)
         for (std::uint32_t i : rooms[room]) room_of[i] = room;
-    out.set(room_of, rooms.size(), tree, numbering);
-    for (std::size_t i = 0; i < room_of.size(); ++i) room_of[i] = out.room_of_[numbering.leaves[i]];
-    std::vector<double> light = coarse_light(stage, out, tree, numbering, rows);
-    if (const auto given = given_to_brighter(rows, tree, numbering, light, room_of); given != room_of) {
-        out.set(given, rooms.size(), tree, numbering);
+    std::vector<double> light;
+    if (rooms.size() > 1) {
+        out.set(room_of, rooms.size(), tree, numbering);
+        for (std::size_t i = 0; i < room_of.size(); ++i) room_of[i] = out.room_of_[numbering.leaves[i]];
+        light = coarse_light(stage, out, tree, numbering, rows);
+        if (const auto given = given_to_brighter(rows, tree, numbering, light, room_of); given != room_of) {
+            out.set(given, rooms.size(), tree, numbering);
+            light = coarse_light(stage, out, tree, numbering, rows);
+        }
+        out.portals_ = find_light_portals(stage, out, tree, numbering, light, seed, stop);
+        for (std::size_t i = 0; i < room_of.size(); ++i) room_of[i] = out.room_of_[numbering.leaves[i]];
+    }
+    const BodySurroundings::Division divided =
+        surroundings->divide(room_of, rooms.size(), {stage, tree, numbering, rows, escaped});
+    if (divided.rooms < 2) return out;
+    if (divided.rooms > rooms.size()) {
+        out.surroundings_ = surroundings;
+        out.set(divided.room_of, divided.rooms, tree, numbering);
+        std::vector<std::size_t> before(divided.rooms);
+        for (std::size_t i = 0; i < room_of.size(); ++i) before[out.room_of_[numbering.leaves[i]]] = room_of[i];
+        if (out.portals_) out.portals_ = out.portals_->renumbered(before);
         light = coarse_light(stage, out, tree, numbering, rows);
     }
     out.weigh(tree, numbering, rows, light);
-    out.portals_ = find_light_portals(stage, out, tree, numbering, light, seed, stop);
     return out;
 }
 

@@ -14,11 +14,13 @@ struct Stage;
 struct LeafNumbering;
 class RayRows;
 class LightPortals;
+class BodySurroundings;
 
 /// The rooms of a scene: parts of free space, separated at openings smaller than a tenth of their walls' area. Light
 /// levels of rooms differ by orders of magnitude, so that errors are judged room by room; otherwise the light outdoors
 /// would hide any error in a cellar. The rooms of a building, as users count them, are `FloorRooms`. A room with less
-/// than a twentieth of the area (not counting ground or sky) is merged with a neighbour.
+/// than a twentieth of the area (not counting ground or sky) is merged with a neighbour. Outdoors, bodies and the
+/// ground around them are a room of their own if the rest of the ground is far larger (`BodySurroundings`).
 class LightRooms {
   public:
     /// Treats the whole scene as one room.
@@ -45,6 +47,8 @@ class LightRooms {
 
     /// Openings between rooms at which rays from the darker room are aimed; null if there are none.
     const LightPortals* portals() const { return portals_.get(); }
+    /// BodySurroundings of bodies that are a room of their own; null if there are none.
+    const BodySurroundings* surroundings() const { return surroundings_.get(); }
 
   private:
     void set(std::span<const std::size_t> room_of, std::size_t rooms, const ElementTree& tree,
@@ -61,6 +65,7 @@ class LightRooms {
     std::vector<double> piece_importance_;
     Field<ElementId, float> lost_, importance_;
     std::shared_ptr<const LightPortals> portals_;
+    std::shared_ptr<const BodySurroundings> surroundings_;
 };
 
 /// Finds the rooms of a scene. Light exchanged between coarse elements becomes even within a room long before it does

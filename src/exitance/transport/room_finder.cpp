@@ -22,9 +22,6 @@ constexpr double min_share = 0.05;
 /// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
 /// Half of it and twice it give the same rooms, measured by `exitance solve office.obj --error 0.02`.
 constexpr double min_detail = 0.001;
-/// An element is outdoors if at least this share of its rays reaches the sky. Derived from facades: under an open sky,
-/// half of their rays reach it, and most of those of a ground.
-constexpr double outdoors = 0.25;
 /// If the scene is at least this many times as large as its rooms, most of its area is ground and sky. Rooms are then
 /// not compared with that area.
 constexpr double far_larger = 20;

@@ -8,6 +8,10 @@
 
 namespace exitance {
 
+/// An element is outdoors if at least this share of its rays reaches the sky. Derived from facades: under an open sky,
+/// half of their rays reach it, and most of those of a ground.
+constexpr double outdoors = 0.25;
+
 /// Coarse elements of a scene, and the rays that they exchange light by.
 struct CoarseElements {
     const Stage& stage;

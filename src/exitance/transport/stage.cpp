@@ -3,6 +3,7 @@
 #include "exitance/base/error_share.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/mesh/adaptive.hpp"
+#include "exitance/transport/body_surroundings.hpp"
 
 namespace exitance {
 namespace {
@@ -51,6 +52,7 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
         std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < small; });
     }
     cut_along_contacts(tree, leaves, contacts, stop);
+    if (rooms.surroundings()) rooms.surroundings()->refine(tree);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
     return tree;
 }

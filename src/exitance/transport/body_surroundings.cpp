@@ -1,0 +1,100 @@
+#include "exitance/transport/body_surroundings.hpp"
+
+#include <algorithm>
+
+#include "exitance/mesh/adaptive.hpp"
+#include "exitance/scene/bodies.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+/// A face or body is small if its radius is at most this share of the scene's size. Derived from its surroundings,
+/// whose radius is twice as large: they reach over a quarter of the scene at most.
+constexpr double small = 0.125;
+/// BodySurroundings with at most this share of a room's area are a room of their own. Derived from the errors of
+/// bodies, which may be three times the requested one: the error of a larger part of a room is at most about that.
+constexpr double max_share = 0.1;
+
+double radius_around(const Point& centre, std::span<const Point> corners, double radius) {
+    for (const Point& corner : corners) radius = std::max(radius, norm(corner - centre));
+    return radius;
+}
+
+}  // namespace
+
+BodySurroundings::BodySurroundings(const Stage& stage) {
+    const Scene& scene = stage.scene;
+    if (scene.distant().domes.empty()) return;
+    double of_ground = 0, all = 0;  // m^2
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const double area = scene.surfaces()[s].area;
+        const bool is_ground = radius_around(centroid(scene.outline(s)), scene.outline(s), 0) > small * scene.size();
+        all += area, of_ground += is_ground ? area : 0;
+    }
+    if (2 * of_ground < all) return;
+    const SceneBodies bodies = find_bodies(scene);
+    std::vector<double> radius(bodies.all.size());
+    for (SurfaceId s : scene.surfaces().ids()) {
+        double& r = radius[bodies.body[s]];
+        r = radius_around(bodies.all[bodies.body[s]].centre, scene.outline(s), r);
+    }
+    double around = 0;  // upper bound of the area of a ground within the balls, m^2
+    for (std::size_t b = 0; b < radius.size(); ++b) {
+        if (radius[b] > small * scene.size()) continue;
+        balls_.push_back({bodies.all[b].centre, 2 * radius[b]});
+        around += pi * balls_.back().radius * balls_.back().radius;
+    }
+    if (around > max_share * all) balls_.clear();
+}
+
+bool BodySurroundings::contain(const Point& x) const {
+    return std::any_of(balls_.begin(), balls_.end(),
+                       [&](const Ball& ball) { return norm(x - ball.centre) <= ball.radius; });
+}
+
+void BodySurroundings::refine(ElementTree& tree) const {
+    // Extent of an element over the radius of the ball. Derived from a ground, which then has some 50 elements in it.
+    constexpr double coarsest = 0.25;
+    std::vector<ElementId> open = tree.leaves();
+    while (!open.empty()) {
+        const ElementId e = open.back();
+        open.pop_back();
+        const Point centre = tree.patch(e).at(tree.centre(e));
+        const double extent = radius_around(centre, tree.outline(e), 0);
+        const bool is_coarse = std::any_of(balls_.begin(), balls_.end(), [&](const Ball& ball) {
+            return extent > coarsest * ball.radius && norm(centre - ball.centre) <= ball.radius + extent;
+        });
+        if (is_coarse)
+            for (ElementId child : refine_element(tree, e)) open.push_back(child);
+    }
+}
+
+BodySurroundings::Division BodySurroundings::divide(std::span<const std::size_t> room_of, std::size_t rooms,
+                                                    const CoarseElements& in) const {
+    Division out{{room_of.begin(), room_of.end()}, rooms};
+    if (are_empty()) return out;
+    struct Room {
+        double all = 0, near = 0, to_sky = 0;  // m^2
+    };
+    std::vector<Room> sums(rooms);
+    std::vector<std::uint8_t> is_near(room_of.size());
+    for (std::size_t i = 0; i < room_of.size(); ++i) {
+        const ElementId e = in.numbering.leaves[i];
+        const double area = in.tree.area(e);
+        const auto rays = static_cast<double>(std::max<std::size_t>(in.rows.hits(i).size(), 1));
+        is_near[i] = contain(in.tree.patch(e).at(in.tree.centre(e))) ? 1 : 0;
+        Room& room = sums[room_of[i]];
+        room.all += area, room.near += is_near[i] * area, room.to_sky += area * in.escaped[i] / rays;
+    }
+    for (std::size_t r = 0; r < rooms; ++r) {
+        if (sums[r].near == 0 || sums[r].near > max_share * sums[r].all || sums[r].to_sky < outdoors * sums[r].all)
+            continue;
+        for (std::size_t i = 0; i < room_of.size(); ++i)
+            if (room_of[i] == r && is_near[i]) out.room_of[i] = out.rooms;
+        ++out.rooms;
+    }
+    return out;
+}
+
+}  // namespace exitance

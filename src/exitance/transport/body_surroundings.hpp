@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/transport/room_finder.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// The surroundings of small bodies outdoors: balls of twice the radius of each body. On a ground that is far larger,
+/// an error of the light beside a building hardly counts among all surfaces, although it is there that people look at
+/// it. These surroundings are therefore judged as a room of their own (`LightRooms`).
+class BodySurroundings {
+  public:
+    /// Finds the bodies of a scene with a sky whose surfaces are mostly large faces, such as a ground. There are none
+    /// if the surroundings of all bodies together are no small part of the scene. O(n log n) in faces.
+    explicit BodySurroundings(const Stage& stage);
+
+    bool are_empty() const { return balls_.empty(); }
+    bool contain(const Point& x) const;
+
+    /// Splits elements until they are small beside each body that they surround.
+    void refine(ElementTree& tree) const;
+
+    /// The room of every leaf, and the number of rooms.
+    struct Division {
+        std::vector<std::size_t> room_of;
+        std::size_t rooms = 0;
+    };
+    /// Divides every room below the sky in two, if the surroundings are at most a tenth of it: the surroundings and the
+    /// bodies become a room of their own. `room_of`: room of every leaf.
+    Division divide(std::span<const std::size_t> room_of, std::size_t rooms, const CoarseElements& in) const;
+
+  private:
+    struct Ball {
+        Point centre;
+        double radius;  ///< Metres; twice that of the body.
+    };
+    std::vector<Ball> balls_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,74 @@
+#include "exitance/transport/body_surroundings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/scene/sky/sky_model.hpp"
+#include "exitance/transport/light_rooms.hpp"
+#include "support/motion.hpp"
+
+namespace exitance {
+namespace {
+
+/// A house of 12 x 10 x 7 m on a square ground of `ground` m, under a uniform sky.
+Scene house(double ground, const Motion& motion, bool with_sky = true) {
+    SceneDescription d;
+    d.groups = {"ground", "house"};
+    d.materials = {{"grey", Spectrum(0.3), {}}};
+    const auto add = [&](std::vector<Point> outline, std::uint32_t group) {
+        SceneDescription::Face face;
+        for (const Point& p : outline) {
+            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(motion(p));
+        }
+        face.group = group;
+        d.faces.push_back(face);
+    };
+    const double g = ground / 2, x = 6, y = 5, z = 7;
+    add({{-g, -g, 0}, {g, -g, 0}, {g, g, 0}, {-g, g, 0}}, 0);
+    add({{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}}, 1);
+    add({{-x, -y, 0}, {x, -y, 0}, {x, -y, z}, {-x, -y, z}}, 1);
+    add({{x, y, 0}, {-x, y, 0}, {-x, y, z}, {x, y, z}}, 1);
+    add({{x, -y, 0}, {x, y, 0}, {x, y, z}, {x, -y, z}}, 1);
+    add({{-x, y, 0}, {-x, -y, 0}, {-x, -y, z}, {-x, y, z}}, 1);
+    if (with_sky) d.distant.domes.push_back({uniform_sky(), Spectrum(100.0)});
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+/// Another scale, turned about the vertical, and moved.
+const Motion changed{0.03, {0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}, {7, -30, 11}};
+
+LightRooms rooms_of(const Stage& stage) {
+    return find_light_rooms(stage, 1, StopRequest());
+}
+
+TEST(BodySurroundings, OfAHouseOnALargeGroundAreARoom) {
+    for (const Motion& motion : {as_written, changed})
+        for (const double ground : {300.0, 3000.0}) {
+            const Scene scene = house(ground, motion);
+            const Stage stage(scene);
+            const LightRooms rooms = rooms_of(stage);
+            ASSERT_EQ(rooms.count(), 2u) << ground;
+            const auto room_at = [&](double x) { return rooms.at(RegionId(0), motion({x, 0, 0})); };
+            EXPECT_EQ(room_at(-100), 0u);
+            EXPECT_EQ(room_at(-8), 1u);
+            EXPECT_EQ(room_at(12), 1u);
+            // The walls and the roof, and a circle of ground of about twice the radius of the house without its floor.
+            const double radius = 2 * 0.5 * std::sqrt(12.0 * 12 + 10 * 10 + 7 * 7), outside = 12 * 10 + 2 * 22 * 7;
+            const double expected = motion.scale * motion.scale * (outside + pi * radius * radius);
+            EXPECT_NEAR(rooms.area(1), expected, 0.3 * expected) << ground;
+        }
+}
+
+TEST(BodySurroundings, AreNoRoomIfTheyAreALargePartOfTheScene) {
+    const Scene scene = house(60, as_written);
+    EXPECT_EQ(rooms_of(Stage(scene)).count(), 0u);
+    EXPECT_TRUE(BodySurroundings(Stage(scene)).are_empty());
+}
+
+TEST(BodySurroundings, AreNoRoomWithoutASky) {
+    const Scene scene = house(3000, as_written, false);
+    EXPECT_TRUE(BodySurroundings(Stage(scene)).are_empty());
+}
+
+}  // namespace
+}  // namespace exitance
