@@ -18,7 +18,8 @@ inline Scene built_scene(const std::string& family, const std::map<std::string, 
 
 /// A closed box of a x b x c metres with one reflectance. Its ceiling emits `exitance` W/m^2, the other faces
 /// `elsewhere` W/m^2.
-inline Scene box_scene(double a, double b, double c, double reflectance, double exitance, double elsewhere = 0) {
+inline SceneDescription box_description(double a, double b, double c, double reflectance, double exitance,
+                                        double elsewhere = 0) {
     SceneDescription d;
     d.file = "box.obj";
     for (const double z : {0.0, c}) d.points.insert(d.points.end(), {{0, 0, z}, {a, 0, z}, {a, b, z}, {0, b, z}});
@@ -29,7 +30,12 @@ inline Scene box_scene(double a, double b, double c, double reflectance, double 
                                                            {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
     for (std::size_t i = 0; i < faces.size(); ++i)
         d.faces.push_back({faces[i], i == 1 ? 1u : 0u, 0, static_cast<int>(i + 1)});
-    CheckedScene checked = make_scene(std::move(d));
+    return d;
+}
+
+/// The scene of `box_description`.
+inline Scene box_scene(double a, double b, double c, double reflectance, double exitance, double elsewhere = 0) {
+    CheckedScene checked = make_scene(box_description(a, b, c, reflectance, exitance, elsewhere));
     EXI_CHECK(static_cast<bool>(checked.scene));
     return std::move(*checked.scene);
 }

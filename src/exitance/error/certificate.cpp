@@ -147,7 +147,8 @@ void Certifier::Content::measure_residuals(std::size_t later) {
 /// Estimates the error of each room.
 void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
-    const std::vector<double> found = response.reflected_by_room();
+    const std::vector<double> found =
+        options.delivered_in.empty() ? response.reflected_by_room() : options.delivered_in;
     rooms.clear(), room_sums.assign(count, {}), room_uncertainties.clear();
     if (count == 0) {
         rooms = {{stage.area, found[0], out.estimate, out.mean_reflected}};

@@ -52,6 +52,8 @@ struct CertificateOptions {
     const SummedLight* summed = nullptr;
     /// Mean reflected light of every room divided by that of the scene; empty if the scene is one room.
     std::vector<double> light_in = {};
+    /// Mean reflected light of every room, W/m^2, to be reported; empty: that of the method's elements.
+    std::vector<double> delivered_in = {};
     /// Allowed error of every room, relative to the mean light of the scene. Weights the density of points and the
     /// parts `local` and `method`. Empty if the scene is one room.
     std::vector<double> allowed_in = {};

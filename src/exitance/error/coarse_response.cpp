@@ -97,11 +97,14 @@ std::vector<Spectrum> CoarseResponse::light_of_rooms() const {
 
 std::vector<double> CoarseResponse::reflected_by_room() const {
     if (stage_.rooms.count() == 0) return {mean_reflected_};
-    std::vector<double> out(stage_.rooms.count());
+    std::vector<double> out(stage_.rooms.count()), area(out.size());
     for (std::size_t i = 0; i < light_.reflected.size(); ++i) {
         const std::size_t room = room_of_leaf(i);
-        out[room] += area_[i] * mean(light_.reflected[i]) / stage_.rooms.area(room);
+        out[room] += area_[i] * mean(light_.reflected[i]), area[room] += area_[i];
     }
+    // Leaves at the borders of a room may be on either side, so that their area differs from the room's.
+    for (std::size_t room = 0; room < out.size(); ++room)
+        if (area[room] > 0) out[room] /= area[room];
     return out;
 }
 

@@ -1,6 +1,8 @@
 #include "exitance/methods/light/light_functions.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
@@ -153,29 +155,48 @@ Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::ui
     return scale;
 }
 
+namespace {
+
+/// Power that every leaf of the method sends, the share of emitted light that is gathered included, W, mean of bands.
+std::vector<double> sent_power(const Scene& scene, const GlobalLight& light) {
+    std::vector<double> out = leaf_areas(light.tree, light.numbering);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const Spectrum& exitance = scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
+        out[i] *= mean(light.reflected[i] + light.direct_share * exitance);
+    }
+    return out;
+}
+
+}  // namespace
+
 bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed) {
     return all_arrives(
         stage, light.tree, light.numbering, [&](ElementId e) { return light.reflected[light.numbering.number[e]]; },
         seed);
 }
 
-namespace {
-
-/// Returns the factor k of every region: its mean over the method's leaves, weighted by their reflected power.
-Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& light) {
-    EXI_CHECK(light.kept.empty() || light.kept.size() == light.numbering.leaves.size());
-    Field<RegionId, double> sent(scene.regions().size(), 0.0), kept(scene.regions().size(), 0.0);
-    for (std::size_t i = 0; i < light.kept.size(); ++i) {
-        const ElementId e = light.numbering.leaves[i];
-        const double power = light.tree.area(e) * mean(light.reflected[i]);
-        sent[light.tree.region(e)] += power;
-        kept[light.tree.region(e)] += light.kept[i] * power;
-    }
-    for (RegionId r : kept.ids()) kept[r] = sent[r] > 0 ? kept[r] / sent[r] : 1;
-    return kept;
+bool may_keep_flux(const Stage& stage, const GlobalLight& light) {
+    if (light.kept.empty()) return true;
+    constexpr double noise = 0.01;  // derived from kept_light's noise: some 10^5 rays know 2% to much less
+    const std::vector<double> sent = sent_power(stage.scene, light);
+    double all = 0, kept = 0;
+    for (std::size_t i = 0; i < sent.size(); ++i) all += sent[i], kept += light.kept[i] * sent[i];
+    return is_kept(Spectrum(kept + noise * all), Spectrum(all));
 }
 
-}  // namespace
+LostLight find_lost_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed) {
+    EXI_CHECK(light.kept.empty() || light.kept.size() == light.numbering.leaves.size());
+    if (std::all_of(light.kept.begin(), light.kept.end(), [](double share) { return share == 1; })) return {};
+    std::vector<double> power = sent_power(stage.scene, light);
+    // Leaves that are dark to the method may have some delivered light.
+    // Any value gives the same mean: derived from rays, of which these leaves shall get some.
+    constexpr double dark = 0.01;
+    const std::vector<double> area = leaf_areas(light.tree, light.numbering);
+    const double mean_radiosity =
+        std::accumulate(power.begin(), power.end(), 0.0) / std::accumulate(area.begin(), area.end(), 0.0);
+    for (std::size_t i = 0; i < power.size(); ++i) power[i] += dark * mean_radiosity * area[i];
+    return LostLight(stage, light.tree, light.numbering, power, seed);
+}
 
 namespace {
 
@@ -186,36 +207,35 @@ struct FluxSums {
     Spectrum gathered;      ///< Power of the gathered light.
 };
 
-FluxSums flux_sums(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
-                   const GlobalLight& light, const Spectrum& c) {
-    const Field<RegionId, double> kept = kept_by_region(scene, light);
+FluxSums flux_sums(const ElementFunction& E, const Scene& scene, const DirectProjection& direct, const LostLight& lost,
+                   const Spectrum& c) {
+    const auto emitted = [&](RegionId r) { return c * scene.material(r).exitance; };
+    const auto of_direct = [&](RegionId r) { return scene.material(r).reflectance * (Spectrum(1.0) - c); };
+    const auto reflectance = [&](RegionId r) { return scene.material(r).reflectance; };
     FluxSums out;
-    const auto send = [&](RegionId region, const Spectrum& power, Spectrum& arriving) {
-        out.sent += power;
-        arriving += kept[region] * power;
-    };
-    for (RegionId r : scene.regions().ids())
-        send(r, scene.regions()[r].area * (c * scene.material(r).exitance), out.first);
-    for (ElementId e : direct.tree.leaves()) {
-        const RegionId r = direct.tree.region(e);
-        const Spectrum lit = (Spectrum(1.0) - c) * direct.fit[e].mean;
-        send(r, direct.tree.area(e) * (scene.material(r).reflectance * lit), out.first);
-    }
+    for (RegionId r : scene.regions().ids()) out.first += scene.regions()[r].area * emitted(r);
+    for (ElementId e : direct.tree.leaves())
+        out.first += direct.tree.area(e) * (of_direct(direct.tree.region(e)) * direct.fit[e].mean);
     for (ElementId e : E.tree.leaves()) {
-        const RegionId r = E.tree.region(e);
         // A linear or bilinear function has its mean at the centre of its element.
         const Spectrum power = E.tree.area(e) * E.at({e, E.tree.centre(e)});
         out.gathered += power;
-        send(r, scene.material(r).reflectance * power, out.again);
+        out.again += reflectance(E.tree.region(e)) * power;
     }
+    out.sent = out.first + out.again;
+    if (lost.is_zero()) return out;
+    const std::size_t regions = scene.regions().size();
+    const ElementFunction projected = as_function(direct);
+    out.first -= lost.uniform_power(emitted) + lost.power(QuickFunction(projected, regions), of_direct);
+    out.again -= lost.power(QuickFunction(E, regions), reflectance);
     return out;
 }
 
 }  // namespace
 
-Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const LostLight& lost,
                    const Spectrum& c) {
-    const FluxSums power = flux_sums(E, scene, direct, light, c);
+    const FluxSums power = flux_sums(E, scene, direct, lost, c);
     if (!is_kept(power.first + power.again, power.sent)) return Spectrum(1.0);
     const Spectrum factor = conserving_scale(power.first, power.gathered - power.again);
     scale(E, factor);
@@ -228,14 +248,14 @@ Spectrum power(const ElementFunction& E) {
     return out;
 }
 
-Spectrum arriving_power(const Scene& scene, const GlobalLight& light, std::span<const ElementFunction> b) {
-    const Field<RegionId, double> kept = kept_by_region(scene, light);
+Spectrum arriving_power(const Scene& scene, const LostLight& lost, std::span<const ElementFunction> b) {
     Spectrum sent, arriving;
-    for (const ElementFunction& f : b)
-        for (ElementId e : f.tree.leaves()) {
-            const Spectrum leaves = f.tree.area(e) * f.at({e, f.tree.centre(e)});
-            sent += leaves, arriving += kept[f.tree.region(e)] * leaves;
-        }
+    for (const ElementFunction& f : b) {
+        const Spectrum leaves = power(f);
+        sent += leaves, arriving += leaves;
+        if (!lost.is_zero())
+            arriving -= lost.power(QuickFunction(f, scene.regions().size()), [](RegionId) { return Spectrum(1.0); });
+    }
     return is_kept(arriving, sent) ? arriving : Spectrum();
 }
 
@@ -244,9 +264,9 @@ void scale(ElementFunction& f, const Spectrum& factor) {
         for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(factor[b] * value[b]);
 }
 
-bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
-                   const GlobalLight& light, const Spectrum& c) {
-    const FluxSums power = flux_sums(E, scene, direct, light, c);
+bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct, const LostLight& lost,
+                   const Spectrum& c) {
+    const FluxSums power = flux_sums(E, scene, direct, lost, c);
     // Share of the absorbed power, derived from the noise of escaping light when few rays find it.
     constexpr double negligible = 0.01;
     if (mean(power.sent - power.first - power.again) > negligible * mean(power.gathered - power.again)) return false;
@@ -264,17 +284,50 @@ double rms_standard_error(const Stage& stage, const GlobalLight& light) {
     return std::sqrt(sum / stage.area);
 }
 
+namespace {
+
+/// Mean over every room of a value that leaves have. Leaves at the borders of a room may be on either side, so that
+/// their area differs from the room's.
+template <class Value>
+std::vector<double> mean_by_room(const Stage& stage, const ElementTree& tree, const Value& value) {
+    std::vector<double> out(stage.rooms.count()), area(out.size());
+    for (const ElementId e : tree.leaves()) {
+        const std::size_t room = stage.rooms.of(tree, e);
+        out[room] += tree.area(e) * value(e), area[room] += tree.area(e);
+    }
+    for (std::size_t room = 0; room < out.size(); ++room) out[room] /= area[room] > 0 ? area[room] : 1;
+    return out;
+}
+
+}  // namespace
+
+void raise_dark_rooms(std::span<double> light) {
+    const double brightest = *std::max_element(light.begin(), light.end());
+    for (double& value : light) value = std::max(value, calibrated::dark_room * brightest);
+}
+
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) {
     const double mean_light = light.mean_reflected(stage.area);
     if (stage.rooms.count() == 0 || mean_light <= 0) return {};
-    std::vector<double> out(stage.rooms.count());
-    for (std::size_t i = 0; i < light.reflected.size(); ++i) {
-        const ElementId e = light.numbering.leaves[i];
-        const std::size_t room = stage.rooms.of(light.tree, e);
-        out[room] += light.tree.area(e) * mean(light.reflected[i]) / (stage.rooms.area(room) * mean_light);
-    }
-    const double brightest = *std::max_element(out.begin(), out.end());
-    for (double& value : out) value = std::max(value, calibrated::dark_room * brightest);
+    std::vector<double> out = mean_by_room(
+        stage, light.tree, [&](ElementId e) { return mean(light.reflected[light.numbering.number[e]]) / mean_light; });
+    raise_dark_rooms(out);
+    return out;
+}
+
+std::vector<double> delivered_by_room(const Stage& stage, const ElementFunction& indirect,
+                                      const DirectProjection& direct, const Spectrum& direct_weight) {
+    if (stage.rooms.count() == 0) return {};
+    const auto reflected = [&](const ElementTree& tree, ElementId e, const Spectrum& E) {
+        return mean(stage.scene.material(tree.region(e)).reflectance * E);
+    };
+    const ElementTree& tree = indirect.tree;
+    std::vector<double> out = mean_by_room(stage, tree, [&](ElementId e) {
+        return reflected(tree, e, indirect.at({e, tree.centre(e)}));
+    });
+    const std::vector<double> projected = mean_by_room(
+        stage, direct.tree, [&](ElementId e) { return reflected(direct.tree, e, direct_weight * direct.fit[e].mean); });
+    for (std::size_t room = 0; room < out.size(); ++room) out[room] += projected[room];
     return out;
 }
 

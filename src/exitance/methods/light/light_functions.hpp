@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exitance/evaluate/quick_function.hpp"
+#include "exitance/gather/lost_light.hpp"
 #include "exitance/scene/bodies.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
@@ -33,30 +34,35 @@ Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::ui
 /// to the reflected power.
 bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed);
 
+/// False if the method's losses (`GlobalLight::kept`) are so large that light cannot be scaled to what arrives.
+bool may_keep_flux(const Stage& stage, const GlobalLight& light);
+
+/// The light of a method that reaches no front; zero if the method's rays lost none.
+LostLight find_lost_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed);
+
 /// Scales gathered indirect light E in each band so that it equals the part of E and of direct light that arrives:
 ///
-///     int E dA = int k (rho ((1 - c) E_dir + E) + c M) dA,
+///     int E dA = int (rho ((1 - c) E_dir + E) + c M) dA - lost,
 ///
-/// where k is taken from the leaves of the method, or is 1 if the method has none. In a closed scene this is the
-/// balance of emitted and absorbed light. The mean error of a local pass, a share of about 1e-3, is light that it
+/// where `lost` is the part of that light which reaches no front. In a closed scene this is the balance of emitted and
+/// absorbed light. The mean error of a local pass, a share of about 1e-3, is light that it
 /// distributes differently from the method among surfaces of different reflectance. Does nothing if much light escapes
 /// (`is_kept`). Returns the scale.
-Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
+Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const LostLight& lost,
                    const Spectrum& c);
 
 /// Total arriving power of irradiance E, W, per band.
 Spectrum power(const ElementFunction& E);
 
-/// Total arriving power of the light that functions `b` together send, W, per band, reduced by the method's losses
-/// (`GlobalLight::kept`). 0 if much light escapes.
-Spectrum arriving_power(const Scene& scene, const GlobalLight& light, std::span<const ElementFunction> b);
+/// Arriving power of the light that functions `b` together send, W, per band. 0 if much light escapes.
+Spectrum arriving_power(const Scene& scene, const LostLight& lost, std::span<const ElementFunction> b);
 
 /// Multiplies all values, per band.
 void scale(ElementFunction& f, const Spectrum& factor);
 
 /// True if E is balanced, as after `keep_flux`, and almost no light escapes.
-bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
-                   const GlobalLight& light, const Spectrum& c);
+bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct, const LostLight& lost,
+                   const Spectrum& c);
 
 /// Reflected light of a solution, plus the share c of the exitance: rho (E_ind + (1 - c) E_dir) + c M, where `indirect`
 /// is E_ind + c E_dir and direct light is read from the projection.
@@ -83,9 +89,18 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
                                                  const DirectProjection& direct, const Spectrum& direct_weight,
                                                  const Spectrum& c);
 
+/// Raises the light of dark rooms to a millionth of the brightest one, since errors are relative to it.
+void raise_dark_rooms(std::span<double> light);
+
 /// Reflected light of every room relative to the mean, at least a millionth of the brightest, since errors are relative
 /// to it. Empty if there is only one room.
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
+
+/// Mean reflected radiosity of every room, W/m^2, of delivered light; see DeliveredLight for the arguments. In a dim
+/// room that sees a bright large ground, the elements of the method are too coarse for it: they are off by a third
+/// where the ground is 3 km wide. Empty if there is only one room.
+std::vector<double> delivered_by_room(const Stage& stage, const ElementFunction& indirect,
+                                      const DirectProjection& direct, const Spectrum& direct_weight);
 
 /// Returns, for every body, the radiosity to which its error is relative, W/m^2: the mean light that the body reflects,
 /// but at least a tenth of its room's. `light_in`: light_by_room().

@@ -7,17 +7,19 @@
 namespace exitance {
 namespace {
 
-/// A furnace, B = M / (1 - rho): direct light, a method's light and gathered light on the same elements.
+/// A furnace, B = M / (1 - rho): direct light, a method's light and gathered light on the same elements. The back of a
+/// sheet in it takes a share of the light.
 struct Furnace {
     static constexpr double rho = 0.5;
-    Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
+    Scene scene;
     Stage stage{scene};
     DirectProjection direct{stage.make_elements({.edge = 0.5, .grading_levels = 0}), {}};
     GlobalLight light;
     ElementFunction gathered;
+    LostLight lost;
 
     /// `kept`: arriving share of its light; `wrong`: factor by which the gathered light is off.
-    Furnace(double kept, double wrong) {
+    Furnace(double kept, double wrong) : scene(room(kept)) {
         light.tree = direct.tree, light.numbering = LeafNumbering(light.tree);
         const std::size_t n = light.numbering.leaves.size();
         light.kept.assign(n, kept);
@@ -26,21 +28,36 @@ struct Furnace {
         gathered.tree = direct.tree, gathered.first_value.resize(gathered.tree.size(), 0);
         for (ElementId e : direct.tree.leaves()) {
             direct.fit[e].mean = Spectrum(kept);  // light of emitters with exitance M = 1
+            direct.fit[e].corners.fill(direct.fit[e].mean);
             gathered.first_value[e] = static_cast<std::uint32_t>(gathered.values.size());
             for (int i = 0; i < 4; ++i) gathered.add_value(Spectrum(wrong * exact(kept)));
         }
+        lost = find_lost_light(stage, light, 1);
+    }
+    /// A box with a tilted sheet that has the share 1 - `kept` of the area. All that its back meets is as bright as all
+    /// else, so that it takes that share of the light.
+    static Scene room(double kept) {
+        SceneDescription d = box_description(2, 1, 1.5, rho, 1, 1);
+        constexpr double walls = 2 * (2 * 1 + 2 * 1.5 + 1 * 1.5), slope = 0.4, width = 0.9;
+        const double x = walls * (1 - kept) / kept / width / 2 * std::cos(slope), z = x * std::tan(slope);
+        const auto first = static_cast<std::uint32_t>(d.points.size());
+        for (const auto& [i, k] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+            d.points.push_back({1 + i * x, 0.5 + k * width / 2, 0.75 + i * z});
+        if (kept < 1) d.faces.push_back({{first, first + 1, first + 2, first + 3}, 0, 0, 7});
+        return *make_scene(std::move(d)).scene;
     }
     /// E_ind = k rho (E_dir + E_ind).
     static double exact(double kept) { return kept * rho * kept / (1 - kept * rho); }
 
     double after_keeping() {
-        keep_flux(gathered, scene, direct, light, Spectrum());
+        keep_flux(gathered, scene, direct, lost, Spectrum());
         return static_cast<double>(gathered.values[0][0]);
     }
 };
 
 TEST(KeepEmittedFlux, ScalesProjectedLightToTheEmittedFluxInClosedScenes) {
-    Furnace furnace(0.99, 1);
+    Furnace furnace(1, 1);
+    for (DirectFit& fit : furnace.direct.fit) fit.mean = Spectrum(0.99);
     EXPECT_NEAR(keep_emitted_flux(furnace.direct, furnace.stage, 1)[0], 1 / 0.99, 1e-12);
     for (ElementId e : furnace.direct.tree.leaves()) EXPECT_NEAR(furnace.direct.fit[e].mean[0], 1, 1e-12);
 }
@@ -64,7 +81,7 @@ TEST(KeepFlux, IncludesTheGatheredShareOfDirectLight) {
     Furnace furnace(1, 1.01);
     // All of M is gathered instead of direct light: E = rho E + M.
     for (std::array<float, bands>& value : furnace.gathered.values) value.fill(2.02f);
-    keep_flux(furnace.gathered, furnace.scene, furnace.direct, furnace.light, Spectrum(1.0));
+    keep_flux(furnace.gathered, furnace.scene, furnace.direct, furnace.lost, Spectrum(1.0));
     EXPECT_NEAR(furnace.gathered.values[0][0], 2, 1e-6);
 }
 
@@ -73,9 +90,9 @@ TEST(ArrivingPower, IsTheKeptPartOfTheSentPower) {
     const ElementFunction two[] = {furnace.gathered, furnace.gathered};
     const double each = furnace.stage.area * Furnace::exact(0.99);
     EXPECT_NEAR(power(furnace.gathered)[0], each, 1e-6 * each);
-    EXPECT_NEAR(arriving_power(furnace.scene, furnace.light, two)[0], 0.99 * 2 * each, 1e-6 * each);
+    EXPECT_NEAR(arriving_power(furnace.scene, furnace.lost, two)[0], 0.99 * 2 * each, 1e-6 * each);
     const Furnace open(0.9, 1);
-    EXPECT_EQ(arriving_power(open.scene, open.light, two)[0], 0) << "of what escapes few rays tell";
+    EXPECT_EQ(arriving_power(open.scene, open.lost, two)[0], 0) << "of what escapes few rays tell";
 }
 
 TEST(KeepFlux, DoesNothingIfMuchEscapesOrTheErrorIsLarge) {

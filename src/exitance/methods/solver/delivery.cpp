@@ -121,7 +121,7 @@ bool StandardSolver::deliver(std::span<const ElementGather> elements, const Read
     gathered_ = {};
     ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves(*light_);
     const Spectrum kept =
-        gathers() && keeps_flux() ? keep_flux(indirect, stage_.scene, direct_, *light_, share_) : Spectrum(1.0);
+        gathers() && keeps_flux() ? keep_flux(indirect, stage_.scene, direct_, lost_light(), share_) : Spectrum(1.0);
     share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
     share_on_node(gathered_.leaves.span());
     if (stop_.requested()) {

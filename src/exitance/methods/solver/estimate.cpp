@@ -30,7 +30,13 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
                      std::span<const ElementGather> gathered) {
     options.direct_in_elements = light_->holds_direct();
     options.keeps_flux = gathers() && !light_->holds_direct() && keeps_flux() &&
-                         has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
+                         has_kept_flux(solution_.indirect, stage_.scene, direct_, lost_light(), solution_.direct_share);
+    const Spectrum c = solution_.direct_share;
+    const Spectrum direct_weight = light_->holds_direct() ? Spectrum() : Spectrum(1.0) - c;
+    if (gathers() && stage_.rooms.count() > 0) {
+        options.delivered_in = delivered_by_room(stage_, solution_.indirect, direct_, direct_weight);
+        rooms_.correct_light(options.delivered_in, light_->mean_reflected(stage_.area), stage_);
+    }
     options.light_in = rooms_.light_in(), options.allowed_in = rooms_.allowed_in();
     options.bounces = options_.bounces;
     options.bodies = &bodies();
@@ -40,8 +46,6 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
     std::optional<ElementFunction> older;
     if (options_.bounces > 0) older = constant_on_leaves(*light_);
     const ElementFunction& indirect = older ? *older : solution_.indirect;
-    const Spectrum c = solution_.direct_share;
-    const Spectrum direct_weight = light_->holds_direct() ? Spectrum() : Spectrum(1.0) - c;
     DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
     if (!bright_.empty()) delivered.aim_at(bright_);
     const auto misfit = [&](const RayEnd& hit) {

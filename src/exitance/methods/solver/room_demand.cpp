@@ -10,6 +10,14 @@ void RoomDemand::set_light(const Stage& stage, const GlobalLight& light) {
     allowed_in_ = allowed_by_room(stage, light_in_, calibrated::whole_beyond_rooms);
 }
 
+void RoomDemand::correct_light(const std::vector<double>& delivered, double mean_light, const Stage& stage) {
+    if (light_in_.empty()) return;
+    light_in_ = delivered;
+    for (double& light : light_in_) light /= mean_light;
+    raise_dark_rooms(light_in_);
+    allowed_in_ = allowed_by_room(stage, light_in_, calibrated::whole_beyond_rooms);
+}
+
 void RoomDemand::keep_noise_of_accurate(std::span<const RoomError> errors, std::size_t rooms, double whole_error,
                                         double target, double step) {
     if (step == 1) return;

@@ -16,6 +16,8 @@ class RoomDemand {
   public:
     /// Sets the light of the rooms, and the errors allowed in proportion to it.
     void set_light(const Stage& stage, const GlobalLight& light);
+    /// Replaces the light of the rooms by that of delivered light, W/m^2. `mean_light`: that of the method, W/m^2.
+    void correct_light(const std::vector<double>& delivered, double mean_light, const Stage& stage);
     /// Allows errors in proportion to the light of each room, however bright it is.
     void allow_by_light() { allowed_in_ = light_in_; }
 

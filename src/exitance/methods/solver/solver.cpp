@@ -153,6 +153,7 @@ void Solver::record_missing_time(double seconds) {
 }
 
 void Solver::run_method(double aim, Snapshots* snapshots) {
+    lost_.reset();
     light_ =
         entry_of(options_.method, form_of(options_))
             .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light(), aim, snapshots});
@@ -174,7 +175,14 @@ ElementFunction Solver::on_leaves(const GlobalLight& light) const {
 }
 
 bool Solver::keeps_flux() const {
-    return options_.bounces < 0 && (!light_->kept.empty() || keeps_reflected_light(stage_, *light_, options_.seed));
+    if (options_.bounces >= 0) return false;
+    return light_->kept.empty() ? keeps_reflected_light(stage_, *light_, options_.seed)
+                                : may_keep_flux(stage_, *light_);
+}
+
+const LostLight& Solver::lost_light() {
+    if (!lost_) lost_ = find_lost_light(stage_, *light_, options_.seed);
+    return *lost_;
 }
 
 LocalPassDemand Solver::gather_demand(double scale) const {

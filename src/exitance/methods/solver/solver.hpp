@@ -4,6 +4,7 @@
 #include "exitance/error/certificate.hpp"
 #include "exitance/gather/element_gather.hpp"
 #include "exitance/gather/local_pass.hpp"
+#include "exitance/gather/lost_light.hpp"
 #include "exitance/methods/method_entry.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/methods/solve_scene.hpp"
@@ -68,6 +69,8 @@ class Solver {
     bool gathers() const { return light_->delivery == MethodDelivery::gathered && !options_.smoothing; }
     /// True if the amount of arriving light is known: because the method conserves light or the scene is closed.
     bool keeps_flux() const;
+    /// Light of the method that reaches no front; found when it is first needed.
+    const LostLight& lost_light();
     /// Settings of a gather for light whose mean is `scale`, W/m^2.
     LocalPassDemand gather_demand(double scale) const;
     const SceneBodies& bodies();
@@ -106,6 +109,7 @@ class Solver {
     Stage stage_;
     DirectProjection direct_;
     std::optional<GlobalLight> light_;  ///< Solution of the method; empty: the method must solve (again).
+    std::optional<LostLight> lost_;     ///< See `lost_light`.
     std::optional<LocalPass> local_pass_;
     BrightPlaces bright_;  ///< Bright places of the light that is gathered, at which rays are aimed.
     LocalPassReport gathered_;
