@@ -88,6 +88,12 @@ std::vector<api::Probe> probes_of(const py::object& points, const py::object& no
     return out;
 }
 
+std::size_t checked_index(std::ptrdiff_t index, std::size_t size, const char* name) {
+    const auto count = static_cast<std::ptrdiff_t>(size);
+    if (index < -count || index >= count) throw py::index_error(fmt::format("{} {} of {}", name, index, count));
+    return static_cast<std::size_t>(index < 0 ? index + count : index);
+}
+
 std::string path_of(const py::object& object) {
     return py::module_::import("os").attr("fspath")(object).cast<std::string>();
 }

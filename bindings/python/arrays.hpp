@@ -76,6 +76,9 @@ api::Spectrum spectrum_of(const py::object& object, const std::string& name);
 std::vector<api::Probe> probes_of(const py::object& points, const py::object& normals, bool& is_single);
 /// Points of shape (n, 3). `name`: the argument, for errors.
 Doubles points_of(const py::object& points, const std::string& name);
+/// Index of an item of a list, where negative numbers count from the end, as in Python. Throws IndexError if there is
+/// no such item. `name`: the kind of item, for errors.
+std::size_t checked_index(std::ptrdiff_t index, std::size_t size, const char* name);
 /// A path or a text as a text.
 std::string path_of(const py::object& object);
 

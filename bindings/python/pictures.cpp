@@ -20,10 +20,12 @@ api::Camera make_camera(const py::object& eye, const py::object& target, double 
                         const std::string& projection) {
     const auto found = std::find(projections.begin(), projections.end(), projection);
     if (found == projections.end())
-        raise_usage(fmt::format("'{}' is none", projection), "projection",
+        raise_usage(fmt::format("'{}' is not a projection", projection), "projection",
                     "there are perspective, orthographic, fisheye and panorama");
-    return {vec3_of(eye, "eye"), vec3_of(target, "target"), fov, vec3_of(up, "up"),
-            static_cast<api::Projection>(found - projections.begin())};
+    const api::Camera camera{vec3_of(eye, "eye"), vec3_of(target, "target"), fov, vec3_of(up, "up"),
+                             static_cast<api::Projection>(found - projections.begin())};
+    check(api::check_camera(camera));
+    return camera;
 }
 
 std::vector<py::ssize_t> shape_of(const api::Picture& picture, std::size_t channels) {
@@ -70,9 +72,7 @@ void add_picture(py::module_& m) {
 }
 
 api::LightMap checked_map(const api::LightMaps& maps, std::ptrdiff_t index) {
-    const auto size = static_cast<std::ptrdiff_t>(maps.size());
-    if (index < -size || index >= size) throw py::index_error(fmt::format("light map {} of {}", index, size));
-    return maps.map(static_cast<std::size_t>(index < 0 ? index + size : index));
+    return maps.map(checked_index(index, maps.size(), "light map"));
 }
 
 void add_light_maps(py::module_& m) {

@@ -137,10 +137,8 @@ std::string describe(const api::Scene& scene) {
                        scene.materials().size());
 }
 
-const api::Face checked_face(const api::Scene& scene, std::ptrdiff_t index) {
-    const auto size = static_cast<std::ptrdiff_t>(scene.size());
-    if (index < -size || index >= size) throw py::index_error(fmt::format("face {} of {}", index, size));
-    return scene.face(static_cast<std::size_t>(index < 0 ? index + size : index));
+api::Face checked_face(const api::Scene& scene, std::ptrdiff_t index) {
+    return scene.face(checked_index(index, scene.size(), "face"));
 }
 
 /// One number per face, as an array.

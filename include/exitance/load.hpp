@@ -28,7 +28,8 @@ struct LoadOptions {
     bool light_groups = false;
 };
 
-/// Reads the files of one scene (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3), checks and repairs it.
+/// Reads the files of one scene (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson and .json: Honeybee
+/// models and CityJSON), checks and repairs it.
 /// Errors: cannot_read, bad_input with file and line, usage for a wrong sky.
 Result<Scene> load(std::span<const std::string> files, const LoadOptions& options = {}, const Control& control = {});
 

@@ -23,9 +23,15 @@ struct Camera {
     Vec3 eye, target;  ///< Metres.
     /// Degrees from the left to the right edge; fisheye: across the disc; orthographic: metres; panorama: unused.
     double fov = 60;
-    Vec3 up = {0, 0, 1};  ///< Vertical direction in the picture.
+    /// Vertical direction in the picture. The y axis is used instead if it is parallel to the line of sight.
+    Vec3 up = {0, 0, 1};
     Projection projection = Projection::perspective;
 };
+
+/// Checks that pictures can be made with a camera.
+/// Error (usage): a number is not finite, the eye is the target, `up` is zero, or `fov` is out of range: above 0, for
+/// perspective at most 170 degrees, for fisheye at most 360 degrees.
+Result<void> check_camera(const Camera& camera);
 
 /// Options of a picture.
 struct PictureOptions {
@@ -61,7 +67,7 @@ class Picture {
 
 /// Renders a solution: exact direct light, and reflected light from the elements. About 0.1 us per sample, and 2 us per
 /// pixel and emitter that may be hidden. Same bits on any number of threads.
-/// Errors: usage for sizes, samples or angles out of range; limit after a stop.
+/// Errors: usage for sizes or samples out of range, or as check_camera(); limit after a stop.
 Result<Picture> render(const Solution& solution, const PictureOptions& options = {}, const Control& control = {});
 
 }  // namespace exitance::api

@@ -7,6 +7,7 @@
 
 #include "exitance/base/polygon.hpp"
 #include "exitance/base/random.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 #include "support/dense_view_factors.hpp"
@@ -102,13 +103,10 @@ Scene placed_scene(const std::vector<Outline>& outlines, double angle, double sc
     d.groups.push_back("all");
     const double c = std::cos(angle), s = std::sin(angle);
     for (const Outline& outline : outlines) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
+        add_polygon(d, outline, [&](const Point& p) {
             const Vec3 q = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(Point(scale * Vec3{q.x, c * q.y - s * q.z, s * q.y + c * q.z} + offset));
-        }
-        d.faces.push_back(face);
+            return Point(scale * Vec3{q.x, c * q.y - s * q.z, s * q.y + c * q.z} + offset);
+        });
     }
     return *make_scene(d).scene;
 }

@@ -7,24 +7,16 @@
 #include "exitance/lab/peers/peers.hpp"
 #include "exitance/lab/studies/task_schedules.hpp"
 #include "run_program.hpp"
+#include "support/own_programs.hpp"
 
 namespace exitance::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Installs the test's own programs under the names of peers, first in PATH.
-class Peers : public testing::Test {
+/// Runs studies with the test's own programs in place of peers.
+class Peers : public OwnPrograms {
   protected:
-    void SetUp() override {
-        path_ = std::getenv("PATH");
-        ::setenv("PATH", (std::string(folder_ / ".") + ":" + path_).c_str(), 1);
-    }
-    void TearDown() override { ::setenv("PATH", path_.c_str(), 1); }
-    void make(const std::string& name, const std::string& script) {
-        ASSERT_TRUE(write_file(folder_ / name, "#!/bin/sh\n" + script));
-        fs::permissions(std::string(folder_ / name), fs::perms::owner_all);
-    }
     std::string results(const std::string& options) {
         const std::string study =
             "title = \"p\"\n[[scene]]\nname = \"tube\"\ngenerate = \"tube length=2\"\n"
@@ -36,8 +28,6 @@ class Peers : public testing::Test {
         EXPECT_EQ(run.status, 0) << run.err;
         return read_text(folder_ / "p/results.csv");
     }
-    TemporaryFolder folder_;
-    std::string path_;
 };
 
 }  // namespace

@@ -38,7 +38,11 @@ TEST(ProgramRender, MakesAPictureOfTheRequestedSizeAndRejectsOtherEndings) {
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "room.exr", "--exposure", "1"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--mesh=all"}).status, 2);
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--gather", "5"}).status, 2);
-    EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1,1 2,2,2 175"}).status, 2);
+    for (const std::string camera : {"1,1,1 2,2,2 175", "1,1,1 2,2,2 0", "1,1,1 1,1,1"}) {
+        run = run_program({"render", solution, "-o", picture, "--camera", camera});
+        EXPECT_EQ(run.status, 2);
+        EXPECT_NE(run.err.find("--camera: the camera's"), std::string::npos) << run.err;
+    }
     EXPECT_EQ(run_program({"render", solution, "-o", picture, "--camera", "1,1 2,2"}).status, 2);
     run = run_program({"render", solution, "-o", picture, "--camera", "kitchen"});
     EXPECT_EQ(run.status, 2);

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "exitance/io/solution/solution_file.hpp"
 #include "run_program.hpp"
+#include "support/sample_solution.hpp"
 
 namespace exitance::test {
 namespace {
@@ -75,6 +77,16 @@ TEST(ProgramUsage, AnUnknownOptionIsAUsageErrorThatNamesTheNearest) {
     const Finished run = run_program({"solve", "room.obj", "--eror", "0.1", "-o", "s.h5"});
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(run.err, "error: '--eror' is not a known option or argument\nhint: did you mean --error?\n");
+}
+
+TEST(ProgramUsage, VerbsWithParallelLoopsTakeANumberOfThreadsAndOthersSayWhyNot) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    EXPECT_EQ(run_program({"stats", folder / "s.h5", "--threads", "2"}).status, 0);
+    EXPECT_EQ(run_program({"export", folder / "s.h5", "-o", folder / "s.obj", "--threads", "2"}).status, 0);
+    const Finished run = run_program({"generate", "list", "--threads", "2"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("--threads: this verb uses one thread only"), std::string::npos) << run.err;
 }
 
 TEST(ProgramUsage, AFileOfPointsWithoutItsOptionIsNamedWithIt) {

@@ -37,6 +37,12 @@ std::string ask(int port, const std::string& request) {
     return out;
 }
 
+/// Returns the whole answer to a request for a path.
+std::string ask_for(int port, const std::string& path) {
+    return ask(
+        port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) + "\r\nConnection: close\r\n\r\n");
+}
+
 /// A port that is free at present.
 int free_port() {
     const int s = socket(AF_INET, SOCK_STREAM, 0);
@@ -215,8 +221,7 @@ TEST(ProgramView, ASceneIsReadInItsLengthUnitAndUprightAxis) {
         {"view", scene, "--length-unit", "mm", "--up", "y", "--error", "0.3", "--port", std::to_string(port)});
     ASSERT_TRUE(run.wait_for("ends the viewer"));
     const auto get = [&](const std::string& path) {
-        const std::string answer = ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
-                                                 "\r\nConnection: close\r\n\r\n");
+        const std::string answer = ask_for(port, path);
         const std::size_t body = answer.find("\r\n\r\n");
         return body == std::string::npos || !answer.starts_with("HTTP/1.1 200") ? "" : answer.substr(body + 4);
     };
@@ -249,10 +254,7 @@ TEST(ProgramView, SolvesASceneUnderASkyWithLightGroupsInLux) {
     RunningProgram run({"view", scene, "--sky", "uniform,dhi=50", "--light-groups", "--unit", "lux", "--error", "0.3",
                         "--port", std::to_string(port)});
     ASSERT_TRUE(run.wait_for("ends the viewer"));
-    const auto get = [&](const std::string& path) {
-        return ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
-                             "\r\nConnection: close\r\n\r\n");
-    };
+    const auto get = [&](const std::string& path) { return ask_for(port, path); };
     std::string groups;
     for (int tries = 0; groups.find("lamp") == groups.npos && tries < 600; ++tries) {
         groups = get("/groups");
@@ -308,8 +310,7 @@ TEST(ProgramView, ComparesTwoSolutionsOfOneRoomInOneUnit) {
     RunningProgram run({"view", folder / "a.h5", folder / "b.h5", "--port", std::to_string(port)});
     ASSERT_TRUE(run.wait_for("ends the viewer"));
     const auto get = [&](const std::string& path) {
-        const std::string answer = ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
-                                                 "\r\nConnection: close\r\n\r\n");
+        const std::string answer = ask_for(port, path);
         return answer.substr(answer.find("\r\n\r\n") + 4);
     };
     EXPECT_NE(get("/data/state").find("b.h5"), std::string::npos);

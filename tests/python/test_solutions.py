@@ -135,6 +135,20 @@ def test_pictures_are_arrays(solution, tmp_path):
             solution.render(camera, **wrong)
     with pytest.raises(ex.UsageError):
         ex.Camera([0, 0, 0], [1, 0, 0], projection="flat")
+    for target, wrong in (
+        ([0, 0, 0], {}),
+        ([1, 0, np.nan], {}),
+        ([1, 0, 0], dict(fov=0)),
+        ([1, 0, 0], dict(fov=180)),
+        ([1, 0, 0], dict(fov=np.nan)),
+        ([1, 0, 0], dict(fov=361, projection="fisheye")),
+        ([1, 0, 0], dict(fov=0, projection="orthographic")),
+        ([1, 0, 0], dict(up=[0, 0, 0])),
+    ):
+        with pytest.raises(ex.UsageError) as caught:
+            ex.Camera([0, 0, 0], target, **wrong)
+        assert "camera" in str(caught.value)
+    assert solution.render(ex.Camera([1, 1, 2], [1, 1, 0]), size=(4, 4)).irradiance.mean() > 0  # up is along the view
 
 
 def test_light_maps_hold_the_irradiance_of_points(solution, tmp_path):

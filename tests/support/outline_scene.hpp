@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "exitance/scene/scene.hpp"
+#include "exitance/scene/add_polygon.hpp"
 
 namespace exitance {
 
@@ -13,14 +13,7 @@ inline Scene scene_of(const std::vector<Outline>& outlines) {
     SceneDescription d;
     d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
     d.groups.push_back("all");
-    for (const Outline& outline : outlines) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(face);
-    }
+    for (const Outline& outline : outlines) add_polygon(d, outline);
     return *make_scene(d).scene;
 }
 

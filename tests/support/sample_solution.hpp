@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "exitance/base/random.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/solution/solution.hpp"
 
 namespace exitance {
@@ -26,14 +27,9 @@ inline Scene sample_scene(bool photometric = false) {
                    {"sign \xc3\xa9", grey(0.8, 0.1, 0.1), exitance_of_radiance(grey(0.1, 0.2, 0.3))}};
     d.groups = {"shell", "lamp", "sign"};
     int line = 10;
-    const auto face = [&](std::initializer_list<Point> corners, std::uint32_t material, std::uint32_t group) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
+    const auto face = [&](const std::vector<Point>& corners, std::uint32_t material, std::uint32_t group) {
+        SceneDescription::Face& f = add_polygon(d, corners);
         f.material = material, f.group = group, f.line = line++;
-        d.faces.push_back(f);
     };
     face({{0, 0, 0}, {1.25, 0, 0}, {1.25, 1, 0}, {0, 1, 0}}, 1, 0);
     face({{1.25, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1.25, 1, 0}}, 1, 0);
@@ -84,6 +80,16 @@ inline ElementFunction sample_function(const Scene& scene, std::uint64_t seed, i
         }
     }
     return f;
+}
+
+/// A solution whose elements, split `cuts` times, all receive the same reflected light.
+inline Solution even_solution(Scene scene, double irradiance, int cuts = 0) {
+    Solution s;
+    s.scene = std::move(scene);
+    s.indirect = sample_function(s.scene, 1, cuts);
+    for (auto& value : s.indirect.values) value.fill(static_cast<float>(irradiance));
+    s.interpolant = s.indirect;
+    return s;
 }
 
 inline Solution sample_solution(int cuts = 40, bool photometric = false) {

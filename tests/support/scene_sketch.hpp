@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "exitance/scene/scene.hpp"
+#include "exitance/scene/add_polygon.hpp"
 
 namespace exitance::test {
 
@@ -16,15 +16,10 @@ struct Sketch {
         d.groups = {"all"};
         d.materials = {{"grey", Spectrum(0.5), {}}, {"light", Spectrum(0), Spectrum(1)}, {"dark", Spectrum(0.1), {}}};
     }
-    Sketch& add(std::vector<Point> outline, std::uint32_t material = 0) {
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
+    Sketch& add(const std::vector<Point>& outline, std::uint32_t material = 0) {
+        SceneDescription::Face& face = add_polygon(d, outline);
         face.material = material;
-        face.line = static_cast<int>(d.faces.size()) + 1;
-        d.faces.push_back(face);
+        face.line = static_cast<int>(d.faces.size());
         return *this;
     }
     Sketch& rectangle(double x0, double y0, double x1, double y1, std::uint32_t material = 0) {

@@ -6,7 +6,7 @@
 
 #include "exitance/base/polygon.hpp"
 #include "exitance/base/random.hpp"
-#include "exitance/scene/scene.hpp"
+#include "exitance/scene/add_polygon.hpp"
 
 namespace exitance::test {
 
@@ -20,14 +20,9 @@ inline Scene make(const std::vector<Face>& faces) {
     SceneDescription description;
     description.groups = {"all"};
     for (const Face& face : faces) {
-        SceneDescription::Face f;
-        for (const Point& p : face.corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(description.points.size()));
-            description.points.push_back(p);
-        }
+        SceneDescription::Face& f = add_polygon(description, face.corners);
         f.material = static_cast<std::uint32_t>(description.materials.size());
         description.materials.push_back({std::to_string(f.material), Spectrum(0.5), Spectrum(face.exitance)});
-        description.faces.push_back(f);
     }
     CheckedScene checked = make_scene(std::move(description));
     EXPECT_TRUE(checked.scene) << checked.scene.error().message;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/scene/scene_builder.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 
@@ -35,14 +36,7 @@ struct WindowRoom {
         ground.model.below = true;
         d.distant.domes.push_back(ground);
     }
-    void face(std::vector<Point> corners) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(std::move(f));
-    }
+    void face(const std::vector<Point>& corners) { add_polygon(d, corners); }
     /// Moves the pane `depth` behind the inner wall. The reveals extend `beyond` farther and are split at the pane if
     /// `cut`.
     void set_back(double depth, double beyond, bool cut) {

@@ -43,16 +43,8 @@ std::optional<Error> find_misuse(const PictureOptions& o) {
             return usage(fmt::format("{} is not from 1 to {} pixels", side, max_pixels_a_side), "size");
     if (o.samples < 1 || o.samples > max_samples)
         return usage(fmt::format("{} is not from 1 to {} rays per pixel", o.samples, max_samples), "samples");
-    if (!o.camera) return std::nullopt;
-    const Camera& c = *o.camera;
-    const bool is_width = c.projection == Projection::orthographic;
-    const double most = c.projection == Projection::fisheye ? 360 : 170;
-    if (c.projection != Projection::panorama && !(c.fov > 0 && (is_width ? std::isfinite(c.fov) : c.fov <= most)))
-        return usage(fmt::format("{} is out of range", c.fov), "fov",
-                     is_width ? "a width in metres" : fmt::format("degrees, at most {}", most));
-    const exitance::Vec3 view = to_engine(c.target - c.eye);
-    if (!is_finite(view) || !(norm(view) > 0))
-        return usage("the camera's eye and target must be different points", "camera");
+    if (o.camera)
+        if (const Result<void> checked = check_camera(*o.camera); !checked) return checked.error();
     return std::nullopt;
 }
 
@@ -88,6 +80,12 @@ Result<void> write(const PictureData& data, const std::string& path, double expo
 }
 
 }  // namespace
+
+Result<void> check_camera(const Camera& camera) {
+    if (const std::optional<std::string> fault = find_fault(engine_camera(camera)); fault)
+        return usage(*fault, "camera");
+    return {};
+}
 
 int Picture::width() const {
     return data_->picture.size.width;

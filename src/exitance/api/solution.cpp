@@ -1,7 +1,5 @@
 #include "exitance/solution.hpp"
 
-#include <algorithm>
-
 #include "exitance/api/inside.hpp"
 #include "exitance/io/export/conforming_mesh.hpp"
 #include "exitance/io/export/export.hpp"

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace exitance {
 namespace {
 
@@ -46,6 +48,16 @@ std::vector<std::string> split_words(const std::string& text) {
     std::vector<std::string> words;
     scan_words(text, words);
     return words;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        parts.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
 }
 
 char open_quote(const std::string& text) {

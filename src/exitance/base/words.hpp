@@ -9,6 +9,8 @@ namespace exitance {
 
 /// Splits text at blanks; words in single or double quotes may contain blanks.
 std::vector<std::string> split_words(const std::string& text);
+/// Splits text at commas. An empty text is one empty part, and a comma at the end is followed by one.
+std::vector<std::string> split_at_commas(const std::string& text);
 /// Returns the quote that `text` opens and does not close, as split_words() reads it; 0 if there is none.
 char open_quote(const std::string& text);
 /// Joins words so that a shell reads them as `words`: words with other than plain characters are in single quotes.

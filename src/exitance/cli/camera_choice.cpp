@@ -45,6 +45,8 @@ Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFu
     if (camera.projection == Projection::fisheye) camera.fov = 180;
     if (camera.projection == Projection::orthographic) camera.fov = solution.scene.size();
     if (arguments.fov) camera.fov = *arguments.fov;
+    if (const std::optional<std::string> fault = find_fault(camera); fault)
+        return Error{ErrorCode::usage, *fault, "--camera", ""};
     return camera;
 }
 

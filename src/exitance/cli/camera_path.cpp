@@ -30,9 +30,11 @@ Result<std::vector<CameraStation>> load_camera_path(const std::string& file) {
             if (count < 7 && (at == end || *at++ != ',')) break;
         }
         const Camera camera{{n[1], n[2], n[3]}, {n[4], n[5], n[6]}, n[7]};
-        if (count != 8 || at != end || !(n[7] >= 1 && n[7] <= 170) || camera.eye == camera.target)
-            return Error{ErrorCode::bad_input, fmt::format("'{:.60}' is not a camera", line),
-                         fmt::format("{}:{}", file, number), "a row is time,ex,ey,ez,tx,ty,tz,fov"};
+        const std::string hint = "a row is time,ex,ey,ez,tx,ty,tz,fov", where = fmt::format("{}:{}", file, number);
+        if (count != 8 || at != end)
+            return Error{ErrorCode::bad_input, fmt::format("'{:.60}' is not a camera", line), where, hint};
+        if (const std::optional<std::string> fault = find_fault(camera); fault)
+            return Error{ErrorCode::bad_input, *fault, where, hint};
         stations.push_back({n[0], camera});
     }
     if (stations.empty())

@@ -15,7 +15,7 @@ struct CameraStation {
 };
 
 /// Reads the rows `time,ex,ey,ez,tx,ty,tz,fov` of a file. A first row that begins with "time" is a heading. Error
-/// (bad_input): no row, or a row that is not a camera with an angle from 1 to 170 degrees.
+/// (bad_input): no row, or a row that is not a camera or has a fault (find_fault).
 Result<std::vector<CameraStation>> load_camera_path(const std::string& file);
 
 /// Interpolates linearly between stations: one camera every 1 / rate seconds from the first station to the last. Times

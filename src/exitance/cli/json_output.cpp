@@ -1,7 +1,5 @@
 #include "exitance/cli/json_output.hpp"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "exitance/methods/options/solve_option_table.hpp"

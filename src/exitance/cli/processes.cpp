@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "exitance/base/archive.hpp"
 #include "exitance/base/memory.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "exitance/base/progress.hpp"
 #include "exitance/cli/exit_code.hpp"

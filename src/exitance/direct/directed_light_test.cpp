@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "exitance/form_factors/directed_form_factor.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "support/test_scenes.hpp"
 
@@ -28,11 +29,7 @@ Scene make_directed(const std::vector<test::Face>& faces, const EmissionProfile&
     d.groups = {"all"};
     d.profiles = {profile};
     for (const test::Face& face : faces) {
-        SceneDescription::Face f;
-        for (const Point& p : face.corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
+        SceneDescription::Face& f = add_polygon(d, face.corners);
         f.material = static_cast<std::uint32_t>(d.materials.size());
         Material material{std::to_string(f.material), Spectrum(0.5), Spectrum(face.exitance)};
         if (face.exitance > 0) {
@@ -40,7 +37,6 @@ Scene make_directed(const std::vector<test::Face>& faces, const EmissionProfile&
             material.emission.profile = ProfileId(0), material.emission.scale = pi / flux;
         }
         d.materials.push_back(material);
-        d.faces.push_back(f);
     }
     CheckedScene checked = make_scene(std::move(d));
     EXPECT_TRUE(checked.scene) << checked.scene.error().message;

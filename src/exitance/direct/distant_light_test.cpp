@@ -6,6 +6,7 @@
 #include "exitance/scene/sky/directional_picture.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -19,17 +20,9 @@ Scene under(const DistantLight& light, const std::vector<Corners>& faces) {
     d.file = "open.obj";
     d.materials = {{"grey", Spectrum(0.5), {}}};
     d.groups = {"all"};
-    for (const Corners& face : faces) {
-        d.faces.push_back({{}, 0, 0, 0});
-        for (const Point& p : face.at) {
-            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-    }
+    for (const Corners& face : faces) add_polygon(d, face.at);
     d.distant = light;
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 const Corners ground{{{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}}};

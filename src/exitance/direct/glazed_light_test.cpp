@@ -6,6 +6,7 @@
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -25,9 +26,7 @@ Scene ground_under(const DistantLight& light, std::vector<Pane> panes) {
     d.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     d.faces.push_back({{0, 1, 2, 3}, 0, 0, 0});
     d.distant = light, d.panes = std::move(panes);
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 std::vector<Point> level_square(double half, double z, double x0 = 0) {

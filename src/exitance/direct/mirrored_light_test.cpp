@@ -7,6 +7,7 @@
 #include "exitance/gather/path_tracer.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "exitance/transport/stage.hpp"
+#include "support/checked_scene.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
@@ -54,12 +55,6 @@ SceneDescription court(const Pane& pane, const Placement& placed = {}, double re
     return d;
 }
 
-Scene made(SceneDescription d) {
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
-}
-
 DistantLight sky_of(double irradiance) {
     SkyModel model = uniform_sky();
     model.normalize();
@@ -89,7 +84,7 @@ TEST(MirroredLight, IsHalfTheSkyTimesTheMeanReflectionBeforeAnInfinitePane) {
         SceneDescription d = court(pane, placed);
         d.distant = sky_of(100);
         // Four times the requested error of 0.5%.
-        EXPECT_NEAR(mirrored_at(made(std::move(d)), placed.point({0, 5, 1}), placed.vector({0, 1, 0})),
+        EXPECT_NEAR(mirrored_at(checked_scene(std::move(d)), placed.point({0, 5, 1}), placed.vector({0, 1, 0})),
                     50 * mean_reflection(pane), 0.02 * 50 * mean_reflection(pane));
     }
 }
@@ -100,11 +95,11 @@ TEST(MirroredLight, AMirroredSunHasTheCosinesOfItsImage) {
     const auto scene = [&](bool shaded) {
         SceneDescription d = court(pane);
         d.distant.discs.push_back({towards, 0.2665 * pi / 180, Spectrum(500)});
-        if (!shaded) return made(std::move(d));
+        if (!shaded) return checked_scene(std::move(d));
         // A screen between the pane and the sun.
         for (const Point& p : {Point{-9, 2, 1.2}, {9, 2, 1.2}, {9, 2, 9}, {-9, 2, 9}}) d.points.push_back(p);
         d.faces.push_back({{8, 9, 10, 11}, 0, 0, 3}), d.faces.push_back({{11, 10, 9, 8}, 0, 0, 4});
-        return made(std::move(d));
+        return checked_scene(std::move(d));
     };
     const Point x{0, 5, 0.5};
     const double right = 500 * towards.z * mean(pane.reflection(-towards.y));
@@ -128,9 +123,9 @@ TEST(MirroredLight, AMirroredLampIsAsFarAsItsImage) {
     const Vec3 way = image - x;
     const Pane pane = front(10, 20, 1.52);
     const double right = 100 * mean(pane.reflection(way.y / norm(way))) * (way.y / norm(way)) / squared_norm(way);
-    EXPECT_NEAR(mirrored_at(made(std::move(d)), x, {0, 1, 0}), right, 1e-9 * right);
+    EXPECT_NEAR(mirrored_at(checked_scene(std::move(d)), x, {0, 1, 0}), right, 1e-9 * right);
     const double half = std::sqrt(0.5);
-    EXPECT_NEAR(mirrored_at(made(std::move(only_parallel)), {0, 5, 0.5}, {0, 0, 1}),
+    EXPECT_NEAR(mirrored_at(checked_scene(std::move(only_parallel)), {0, 5, 0.5}, {0, 0, 1}),
                 40 * half * mean(pane.reflection(half)), 1e-6);
 }
 
@@ -146,7 +141,7 @@ TEST(MirroredLight, AMirroredEmitterIsSeenAtItsImage) {
     const double right =
         1000 * mean(front(10, 20, 1.52).reflection(cosine)) * 0.04 * cosine * cosine / (pi * squared_norm(way));
     // Over the 0.2 m of the lamp the kernel changes by a few percent; four times the requested error of 0.5%.
-    EXPECT_NEAR(mirrored_at(made(std::move(d)), x, {0, 1, 0}), right, 0.02 * right);
+    EXPECT_NEAR(mirrored_at(checked_scene(std::move(d)), x, {0, 1, 0}), right, 0.02 * right);
 }
 
 /// A glazed facade of 20 x 20 m before a black wall, under a uniform sky, with sensors in front of it. The known values
@@ -165,7 +160,7 @@ TEST(MirroredLight, IsNotMissedWhereFewSamplesFindIt) {
     const auto first = static_cast<std::uint32_t>(d.points.size());
     for (const Point& p : {Point{0.3, 0, 2.2}, {0.3, 0, 2.4}, {0.5, 0, 2.4}, {0.5, 0, 2.2}}) d.points.push_back(p);
     d.faces.push_back({{first, first + 1, first + 2, first + 3}, 1, 0, 3});
-    const Scene scene = made(std::move(d));
+    const Scene scene = checked_scene(std::move(d));
     const RayTracer tracer(scene);
     const MirroredLight light(scene, tracer);
     const SurfacePoint place{{-1.2, 1, 0.1}, {0, 0, 1}, RegionId()};
@@ -182,7 +177,7 @@ TEST(MirroredLight, IsPartOfDirectLightAndOfTheReference) {
     SceneDescription d = court(front(10, 20, 1.52));
     for (std::size_t i = 4; i < 8; ++i) d.points[i].x /= 2;
     d.distant = sky_of(100);
-    const Scene scene = made(std::move(d));
+    const Scene scene = checked_scene(std::move(d));
     const Stage stage(scene);
     ASSERT_TRUE(stage.place_light.is_mirrored());
     PlaceLight::Workspace room;
@@ -207,7 +202,7 @@ TEST(MirroredLight, IsInTheLightThatPathsCarry) {
     PunctualLight lamp;
     lamp.position = {1, 3, 2}, lamp.intensity = Spectrum(100);
     d.lights.push_back(lamp);
-    const Scene scene = made(std::move(d));
+    const Scene scene = checked_scene(std::move(d));
     const Stage stage(scene);
     const PathTracer paths(stage);
     PlaceLight::Workspace room;
@@ -232,7 +227,7 @@ TEST(MirroredLight, ASolveIncludesIt) {
     for (const Placement& placed : {Placement{}, Placement{0.7, 0.01}}) {
         SceneDescription d = court(front(10, 20, 4, placed), placed, 0.5);
         d.distant = sky_of(100);
-        const Scene scene = made(std::move(d));
+        const Scene scene = checked_scene(std::move(d));
         const Solution solution = solved(scene, {.error = 0.05});
         EXPECT_TRUE(solution.statistics.converged);
         EXPECT_TRUE(solution.statistics.warnings.empty());
@@ -253,8 +248,8 @@ TEST(MirroredLight, ASolveIncludesIt) {
 TEST(MirroredLight, ThereIsNoneWithoutMirroringPanesOrLight) {
     SceneDescription air = court(front(10, 20, 1));
     air.distant = sky_of(100);
-    EXPECT_FALSE(panes_may_mirror_light(made(std::move(air))));
-    EXPECT_FALSE(panes_may_mirror_light(made(court(front(10, 20, 1.52))))) << "there is no light";
+    EXPECT_FALSE(panes_may_mirror_light(checked_scene(std::move(air))));
+    EXPECT_FALSE(panes_may_mirror_light(checked_scene(court(front(10, 20, 1.52))))) << "there is no light";
 }
 
 }  // namespace exitance

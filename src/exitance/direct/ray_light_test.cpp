@@ -10,6 +10,7 @@
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -21,13 +22,10 @@ Scene slats(const DistantLight& light, std::vector<Pane> panes = {}, double lamp
     d.materials = {{"grey", Spectrum(0.5), {}}, {"lamp", Spectrum(0.0), Spectrum(lamp)}};
     d.groups = {"all"};
     const auto face = [&](const std::vector<Point>& corners, std::uint32_t material) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back({0.8 * p.x - 0.6 * p.y + 3, 0.6 * p.x + 0.8 * p.y - 2, p.z});
-        }
-        f.material = material;
-        d.faces.push_back(f);
+        const auto place = [](const Point& p) {
+            return Point{0.8 * p.x - 0.6 * p.y + 3, 0.6 * p.x + 0.8 * p.y - 2, p.z};
+        };
+        add_polygon(d, corners, place).material = material;
     };
     face({{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}}, 0);
     for (int i = 0; i < 40; ++i) {
@@ -36,9 +34,7 @@ Scene slats(const DistantLight& light, std::vector<Pane> panes = {}, double lamp
     }
     if (lamp > 0) face({{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, 1);
     d.distant = light, d.panes = std::move(panes);
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 Point ground_at(double x, double y) {

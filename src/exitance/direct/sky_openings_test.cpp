@@ -13,6 +13,7 @@
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/stage.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -41,14 +42,7 @@ struct Rooms {
         d.file = "rooms.obj";
         d.materials = {{"grey", Spectrum(0.5), {}}};
         d.groups = {"all"};
-        const auto face = [&](std::vector<Point> corners) {
-            SceneDescription::Face f;
-            for (const Point& p : corners) {
-                f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-                d.points.push_back(placing(p));
-            }
-            d.faces.push_back(f);
-        };
+        const auto face = [&](const std::vector<Point>& corners) { add_polygon(d, corners, placing); };
         const auto sheet = [&](const std::vector<Point>& corners) {  // a wall with two sides
             face(corners);
             face({corners.rbegin(), corners.rend()});
@@ -82,9 +76,7 @@ struct Rooms {
                   {ground, ground, -0.05},
                   {-ground, ground, -0.05}});
         d.distant = light;
-        CheckedScene checked = make_scene(std::move(d));
-        EXI_CHECK(static_cast<bool>(checked.scene));
-        return std::move(*checked.scene);
+        return checked_scene(std::move(d));
     }
 };
 

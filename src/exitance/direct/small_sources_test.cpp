@@ -8,6 +8,7 @@
 #include "exitance/base/polygon.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/direct_projection.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -46,11 +47,7 @@ struct Description {
         for (std::size_t i = 0; i < faces.size(); ++i) {
             const auto material = static_cast<std::uint32_t>(d.materials.size());
             d.materials.push_back({std::to_string(i), Spectrum(0.5), Spectrum(exitances[i])});
-            d.faces.push_back({{}, material, 0, 0});
-            for (const Point& p : faces[i]) {
-                d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-                d.points.push_back(place(p));
-            }
+            add_polygon(d, faces[i], place).material = material;
         }
         if (norm(sun) > 0) d.distant.discs.push_back({place.turned(sun), sun_half_angle, Spectrum(sun_irradiance)});
         if (intensity > 0) {
@@ -62,9 +59,7 @@ struct Description {
             for (Point& p : pane.corners) p = place(p);
             d.panes.push_back(pane);
         }
-        CheckedScene checked = make_scene(std::move(d));
-        EXI_CHECK(static_cast<bool>(checked.scene));
-        return std::move(*checked.scene);
+        return checked_scene(std::move(d));
     }
 };
 

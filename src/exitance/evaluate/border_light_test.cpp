@@ -5,6 +5,7 @@
 #include "exitance/evaluate/surface_levels.hpp"
 #include "exitance/measure/measuring_grid.hpp"
 #include "exitance/reference/path_reference.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
@@ -27,13 +28,7 @@ Scene open_room(const Motion& motion = {}) {
     d.materials = {{"wall", Spectrum(0.5), {}}, {"lamp", {}, Spectrum(50)}};
     d.groups = {"all"};
     const auto face = [&](const std::vector<Point>& corners, std::uint32_t material) {
-        SceneDescription::Face f;
-        f.material = material;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(motion(p));
-        }
-        d.faces.push_back(f);
+        add_polygon(d, corners, motion).material = material;
     };
     face({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}}, 0);
     face({{0, 0, 0}, {0, 3, 0}, {0, 3, 2.5}, {0, 0, 2.5}}, 0);
@@ -56,11 +51,7 @@ Scene open_room(const Motion& motion = {}) {
 
 /// Solution with direct light only.
 Solution direct_light(Scene scene) {
-    Solution s;
-    s.scene = std::move(scene);
-    s.indirect = sample_function(s.scene, 1, 0);
-    for (auto& value : s.indirect.values) value.fill(0);
-    s.interpolant = s.indirect;
+    Solution s = even_solution(std::move(scene), 0);
     s.bounces = 0;
     return s;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
@@ -23,13 +25,9 @@ Solution black_box(bool photometric, double angle = 0, double size = 1) {
         for (const Vec2& p : {Vec2{0, 0}, Vec2{2, 0}, Vec2{2, 1}, Vec2{0, 1}})
             d.points.push_back({size * (std::cos(angle) * p.x - std::sin(angle) * p.y) + 7,
                                 size * (std::sin(angle) * p.x + std::cos(angle) * p.y) - 3, size * z + 100});
-    for (const std::vector<std::uint32_t>& f : std::vector<std::vector<std::uint32_t>>{
-             {0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}})
-        d.faces.push_back({f, 0, 0, 0});
-    CheckedScene made = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(made.scene));
+    for (const std::vector<std::uint32_t>& f : box_faces) d.faces.push_back({f, 0, 0, 0});
     Solution s;
-    s.scene = std::move(*made.scene);
+    s.scene = checked_scene(std::move(d));
     s.indirect = s.interpolant = sample_function(s.scene, 1, 0);
     for (auto& value : s.interpolant.values)
         for (std::size_t b = 0; b < bands; ++b) value[b] = static_cast<float>(exitance[b]);
@@ -88,10 +86,8 @@ Solution lamp_over_floor(PunctualLight lamp, double height, double scale, double
     lamp.position = Point{} + scale * turned({0, 0, height}), lamp.direction = turned(lamp.direction);
     lamp.name = "lamp", lamp.intensity = Spectrum(100);
     d.lights = {lamp};
-    CheckedScene made = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(made.scene));
     Solution s;
-    s.scene = std::move(*made.scene);
+    s.scene = checked_scene(std::move(d));
     s.indirect = s.interpolant = sample_function(s.scene, 1, 0);
     for (auto& value : s.indirect.values) value.fill(0);
     return s;

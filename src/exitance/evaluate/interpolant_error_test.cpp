@@ -7,6 +7,7 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/error/area_samples.hpp"
 #include "exitance/evaluate/interpolant.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/transport/light_rooms.hpp"
 #include "support/built_scene.hpp"
@@ -100,12 +101,7 @@ Scene lit_and_closed_room() {
     SceneDescription d;
     d.materials = {{"grey", Spectrum(0.5), {}}};
     d.groups = {"all"};
-    const auto face = [&](const std::vector<Point>& corners) {
-        SceneDescription::Face f;
-        for (const Point& p : corners)
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size())), d.points.push_back(p);
-        d.faces.push_back(f);
-    };
+    const auto face = [&](const std::vector<Point>& corners) { add_polygon(d, corners); };
     for (const double x : {0.0, 12.0}) {
         const double end = x + 4;
         face({{x, 0, 0}, {end, 0, 0}, {end, 4, 0}, {x, 4, 0}});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/scene/add_polygon.hpp"
 #include "support/test_scenes.hpp"
 
 namespace exitance {
@@ -59,13 +60,7 @@ TEST(UnlitSides, AreNotTheSidesThatSeeAPatchOfSun) {
     for (const Face& face : faces) add_both_sides(sheets, face);
     SceneDescription d;
     d.groups = {"all"}, d.materials = {{"grey", Spectrum(0.5), {}}};
-    for (const Face& face : sheets) {
-        d.faces.push_back({{}, 0, 0, 0});
-        for (const Point& p : face.corners) {
-            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-    }
+    for (const Face& face : sheets) add_polygon(d, face.corners);
     const Vec3 sun = normalized(Vec3{0.02, 0.01, 1});
     d.distant.discs.push_back({sun, 0.005, Spectrum(700.0)});
     CheckedScene checked = make_scene(std::move(d));

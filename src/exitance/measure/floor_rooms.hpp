@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// A room as planes and observers need it: a part of a floor that walls enclose.
+/// A room of a building: a part of a floor that walls enclose.
 struct FloorRoom {
     std::string name;          ///< Name, from the name of its floor's faces; empty: none.
     double area = 0;           ///< Area of its floor, m^2.
@@ -14,11 +14,11 @@ struct FloorRoom {
     std::uint32_t part = 0;    ///< Part of that floor.
 };
 
-/// The rooms of a building as users count them, found from floors and walls; the largest floor first. Errors are judged
-/// by other rooms, which light separates (`LightRooms`). A floor is a group of touching faces
-/// that point up, of at least 1 m^2 (in small models: a tenth of the largest). Left out are: spaces too low to stand
-/// in; faces above a room's floor by less than the height of a person, which are furniture; and, if some floors have
-/// ceilings, those without, which are roofs and the ground outside.
+/// The rooms of a building, found from its floors and walls; those of the largest floor come first. Error estimates use
+/// other rooms, which are the parts of a scene between which little light passes (`LightRooms`). A floor is a group of
+/// touching faces that point up, of at least 1 m^2 (in small models: a tenth of the largest). Three kinds of faces are
+/// no floors: those of spaces too low to stand in; furniture, which is less than the height of a person above a floor;
+/// and, if some floors have ceilings, those without, which are roofs and the ground outside.
 class FloorRooms {
   public:
     FloorRooms() = default;  ///< No rooms.

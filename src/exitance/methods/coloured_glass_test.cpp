@@ -6,6 +6,7 @@
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reference/path_reference.hpp"
+#include "support/checked_scene.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
@@ -39,9 +40,7 @@ Scene glazed_box(const Spectrum& transmissivity, int panes, double turn = 0) {
         pane.transmissivity = transmissivity;
         d.panes.push_back(pane);
     }
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 /// Places on the floor behind the panes.

@@ -6,6 +6,7 @@
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "exitance/transport/stage.hpp"
+#include "support/checked_scene.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
@@ -35,20 +36,10 @@ struct TwoRooms {
         else
             face({{b, 0, 0}, {b, 0, 1}, {b, 1, 1}, {b, 1, 0}}, material);
     }
-    void face(std::vector<Point> corners, std::uint32_t material) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        f.material = material;
-        d.faces.push_back(std::move(f));
+    void face(const std::vector<Point>& corners, std::uint32_t material) {
+        add_polygon(d, corners).material = material;
     }
-    Scene scene() const {
-        CheckedScene checked = make_scene(SceneDescription(d));
-        EXI_CHECK(static_cast<bool>(checked.scene));
-        return std::move(*checked.scene);
-    }
+    Scene scene() const { return checked_scene(d); }
 };
 
 Material wall(double reflectance, double exitance) {

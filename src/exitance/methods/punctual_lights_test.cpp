@@ -6,6 +6,7 @@
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
@@ -33,9 +34,7 @@ Scene room_with_bulb() {
     PunctualLight spot = bulb;
     spot.kind = PunctualLight::Kind::spot, spot.position = {0.5, 1, 1.9}, spot.direction = {0.6, 0, -0.8};
     d.lights = {bulb, spot};
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/solved.hpp"
 #include "support/test_scenes.hpp"
 
@@ -114,19 +115,11 @@ Scene uneven_furnace() {
     const double rho[] = {0.2, 0.8, 0.5, 0.6, 0.4, 0.7};
     std::size_t face = 0;
     for (const test::Face& f : test::closed_box({}, {4, 3, 2.5})) {
-        SceneDescription::Face out;
-        for (const Point& p : f.corners) {
-            out.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        out.material = static_cast<std::uint32_t>(face);
+        add_polygon(d, f.corners).material = static_cast<std::uint32_t>(face);
         d.materials.push_back({std::to_string(face), Spectrum(rho[face]), Spectrum(1 - rho[face])});
-        d.faces.push_back(out);
         ++face;
     }
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(checked.scene);
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 TEST(SolveScene, AFurnaceOfDifferentReflectancesIsUniform) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/checked_scene.hpp"
+
 namespace exitance {
 namespace {
 
@@ -29,16 +31,10 @@ SceneDescription with_groups(std::vector<std::string> groups) {
     return d;
 }
 
-Scene made(SceneDescription d) {
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
-}
-
 TEST(Bodies, AreFacesThatShareEdges) {
     SceneDescription d = with_groups({"default"});
     add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 2, 0);
-    const Scene scene = made(std::move(d));
+    const Scene scene = checked_scene(std::move(d));
     const SceneBodies bodies = find_bodies(scene);
     ASSERT_EQ(bodies.all.size(), 2u);
     EXPECT_EQ(bodies.all[0].surfaces, 6u);
@@ -64,7 +60,7 @@ TEST(Bodies, OfNearlyFlatMeshesAreWhole) {
                 d.faces.push_back({{a, b, b + 1}, 0, 0, 0});
                 d.faces.push_back({{a, b + 1, a + 1}, 0, 0, 0});
             }
-        EXPECT_EQ(find_bodies(made(std::move(d))).all.size(), 1u) << scale;
+        EXPECT_EQ(find_bodies(checked_scene(std::move(d))).all.size(), 1u) << scale;
     }
 }
 
@@ -72,7 +68,7 @@ TEST(Bodies, AreFacesOfOneNamedObject) {
     SceneDescription d = with_groups({"table", "default"});
     add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 1, 0), add_cube(d, {6, 0, 0}, 1, 1),
         add_cube(d, {9, 0, 0}, 1, 1);
-    const SceneBodies bodies = find_bodies(made(std::move(d)));
+    const SceneBodies bodies = find_bodies(checked_scene(std::move(d)));
     ASSERT_EQ(bodies.all.size(), 3u);  // "default" is the name given to faces without a name
     EXPECT_EQ(bodies.all[0].surfaces, 12u);
 }
@@ -97,7 +93,7 @@ void add_turned_box(SceneDescription& d, const Point& at, const Vec3& size, bool
 SceneBodies bodies_of_box(const Vec3& size, bool inwards = false, bool with_rim = true) {
     SceneDescription d = with_groups({"default"});
     add_turned_box(d, {500, -300, 20}, size, inwards, with_rim);
-    return find_bodies(made(std::move(d)));
+    return find_bodies(checked_scene(std::move(d)));
 }
 
 TEST(Bodies, AreTheSidesOfPlatesAndSheets) {
@@ -121,7 +117,7 @@ TEST(Bodies, OfCompactShapesAndFlatHallsAreWhole) {
 TEST(Bodies, TheSmallestAreMergedWithNeighbours) {
     SceneDescription d = with_groups({"default"});
     for (int i = 0; i < 20; ++i) add_cube(d, {i < 10 ? 2.0 * i : 1000 + 2.0 * i, 0, 0}, i < 10 ? 0.1 : 1, 0);
-    const Scene scene = made(std::move(d));
+    const Scene scene = checked_scene(std::move(d));
     const SceneBodies bodies = find_bodies(scene, 11);
     ASSERT_EQ(bodies.all.size(), 11u);
     double area = 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/base/random.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
@@ -13,13 +14,8 @@ Scene scene_of(const std::vector<std::vector<Point>>& faces) {
     d.materials = {{"grey", Spectrum(0.5), {}}, {"other", Spectrum(0.4), {}}};
     d.groups = {"all"};
     for (const auto& outline : faces) {
-        SceneDescription::Face f;
-        for (const Point& p : outline) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        f.material = d.faces.size() % 2;  // alternating materials prevent joining
-        d.faces.push_back(f);
+        const bool is_odd = d.faces.size() % 2 == 1;
+        add_polygon(d, outline).material = is_odd ? 1 : 0;  // alternating materials prevent joining
     }
     CheckedScene made = make_scene(d);
     EXPECT_TRUE(made.scene);

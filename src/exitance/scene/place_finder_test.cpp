@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "exitance/scene/add_polygon.hpp"
+
 namespace exitance {
 namespace {
 
@@ -15,13 +17,8 @@ Scene scene_of(const std::vector<Outline>& faces, const std::vector<Outline>& pa
     d.materials = {{"grey", Spectrum(0.5), {}}, {"other", Spectrum(0.4), {}}};
     d.groups = {"all"};
     for (const Outline& outline : faces) {
-        SceneDescription::Face f;
-        for (const Point& p : outline) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        f.material = d.faces.size() % 2;
-        d.faces.push_back(f);
+        const bool is_odd = d.faces.size() % 2 == 1;
+        add_polygon(d, outline).material = is_odd ? 1 : 0;
     }
     for (const Outline& outline : panes) {
         Pane pane;

@@ -98,14 +98,19 @@ bool is_stale(const std::string& path, const std::string& content) {
     return age && *age > max_silence;
 }
 
+/// Creates a file with its content; `flag` is O_TRUNC or O_EXCL, for a file that exists. Returns 0 or errno.
+int create_file(const std::string& path, int flag, const std::string& content) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | flag | O_CLOEXEC, 0666);
+    if (file < 0) return errno;
+    const bool is_complete = ::write(file, content.data(), content.size()) == static_cast<ssize_t>(content.size());
+    ::close(file);
+    return is_complete ? 0 : ENOSPC;
+}
+
 /// Creates the lock file with its content, whole and only if there is none. Returns 0 or errno.
 int create_lock(const std::string& path, const LockOwner& owner) {
     const std::string own = fmt::format("{}.{}", path, owner.token), content = content_of(owner);
-    const int file = ::open(own.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) return errno;
-    const bool is_written = ::write(file, content.data(), content.size()) == static_cast<ssize_t>(content.size());
-    ::close(file);
-    if (!is_written) return ::unlink(own.c_str()), ENOSPC;
+    if (const int error = create_file(own, O_TRUNC, content); error != 0) return ::unlink(own.c_str()), error;
     int status = ::link(own.c_str(), path.c_str()) == 0 ? 0 : errno;
     // Over NFS a link may be made although its reply is lost.
     struct stat made;
@@ -113,11 +118,7 @@ int create_lock(const std::string& path, const LockOwner& owner) {
     ::unlink(own.c_str());
     if (status != EPERM && status != EOPNOTSUPP && status != ENOSYS && status != EMLINK) return status;
     // The file system has no hard links.
-    const int exclusive = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (exclusive < 0) return errno;
-    const bool is_complete = ::write(exclusive, content.data(), content.size()) == static_cast<ssize_t>(content.size());
-    ::close(exclusive);
-    return is_complete ? 0 : ENOSPC;
+    return create_file(path, O_EXCL, content);
 }
 
 /// Removes the lock file `path` if it still has this content and its process has ended. Only one process of all that

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "exitance/base/progress.hpp"
 #include "exitance/base/result.hpp"

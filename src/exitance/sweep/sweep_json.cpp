@@ -1,7 +1,5 @@
 #include "exitance/sweep/sweep_json.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <nlohmann/json.hpp>
 

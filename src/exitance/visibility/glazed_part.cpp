@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "exitance/base/clip_convex.hpp"
 #include "exitance/base/limits.hpp"
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
@@ -21,12 +22,8 @@ struct Part {
 /// The part of a convex polygon with n . r >= offset.
 std::vector<Vec3> cut_above(std::span<const Vec3> polygon, const Vec3& n, double offset = 0) {
     std::vector<Vec3> out;
-    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
-        const Vec3 &p = polygon[i], &q = polygon[i + 1 == m ? 0 : i + 1];
-        const double a = dot(n, p) - offset, b = dot(n, q) - offset;
-        if (a >= 0) out.push_back(p);
-        if ((a > 0 && b < 0) || (a < 0 && b > 0)) out.push_back(p + (a / (a - b)) * (q - p));
-    }
+    clip_convex(
+        polygon, [&](const Vec3& r) { return dot(n, r) - offset; }, out);
     if (out.size() < 3) out.clear();
     return out;
 }

@@ -31,6 +31,7 @@ Error unexpected(const CLI::App& app, const std::vector<std::string>& words) {
     if (are_points && std::find(known.begin(), known.end(), "--points") != known.end())
         return {ErrorCode::usage, fmt::format("'{}' is not a known option or argument", word), "",
                 fmt::format("name a file of points by its option: --points {}", word)};
+    if (word == "--threads") return {ErrorCode::usage, "this verb uses one thread only", word, "leave the option out"};
     const std::string near = word.starts_with("--") ? nearest(word.substr(0, word.find('=')), known) : "";
     return {ErrorCode::usage, fmt::format("'{}' is not a known option or argument", word), "",
             near.empty() ? app.get_name() + " --help lists the options" : fmt::format("did you mean {}?", near)};

@@ -80,6 +80,7 @@ struct LightProbeArguments : CommonArguments {
 
 struct StatsArguments : CommonArguments {
     std::string solution;
+    int threads = 0;
 };
 
 struct MixArguments : CommonArguments {
@@ -92,6 +93,7 @@ struct MixArguments : CommonArguments {
 struct ExportArguments : CommonArguments {
     std::string solution, output;
     std::string links;  ///< Number of an element, or a point x,y,z, whose links are exported; empty: export the light.
+    int threads = 0;
 };
 
 struct RenderArguments : CommonArguments {

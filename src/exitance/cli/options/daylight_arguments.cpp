@@ -52,8 +52,10 @@ void declare_criteria(CLI::App& app, DaylightArguments& arguments) {
                    "Occupied hours: from and to every day, such as 8-18, or a file with a number per hour of the "
                    "weather, 0 for an empty room. Default 8-18")
         ->type_name("HOURS");
-    add_positive(app, "--target", criteria.target, "LX",
-                 "Illuminance of DA, continuous DA, sDA and dimmed electric light. Default 300");
+    add_positive(
+        app, "--target", criteria.target, "LX",
+        "Illuminance that daylight should reach, in daylight autonomy (DA, continuous DA, spatial sDA) and for "
+        "dimmed electric light. Default 300");
     app.add_option_function<std::string>(
            "--useful",
            [&criteria](const std::string& w) {
@@ -64,7 +66,7 @@ void declare_criteria(CLI::App& app, DaylightArguments& arguments) {
                    throw CLI::ValidationError(
                        "--useful", fmt::format("'{}' is not three ascending numbers such as 100,300,3000", w));
            },
-           "Limits of UDI, ascending. Default 100,300,3000")
+           "Limits between the ranges of useful daylight illuminance (UDI), ascending. Default 100,300,3000")
         ->type_name("LX,LX,LX");
     add_share(app, "--dimmed-power", criteria.dimmed_power, "SHARE",
               "Power of electric light that daylight dims completely, as a share of its full power. Default 0");
@@ -99,7 +101,8 @@ void declare_states(CLI::App& app, DaylightArguments& arguments) {
     CLI::Option* states =
         app.add_option("--states", arguments.states,
                        "Groups of panes with states, such as open and blinds down, and the rule that chooses the "
-                       "state of every hour (TOML); the states are written to states.csv. Use it for sDA of LM-83")
+                       "state of every hour (TOML); the states are written to states.csv. Use it for spatial daylight "
+                       "autonomy (sDA) by LM-83, which closes blinds against the sun")
             ->type_name("FILE");
     for (const char* other : {"--coefficients", "--part", "--merge", "--views"})
         states->excludes(app.get_option(other));
@@ -107,9 +110,10 @@ void declare_states(CLI::App& app, DaylightArguments& arguments) {
 
 /// Options of EN 17037.
 void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
-    app.add_option("--eyes", arguments.eyes,
-                   "Places from which views out are assessed by EN 17037 (points as for --points, directions ignored); "
-                   "written to view.csv")
+    app.add_option(
+           "--eyes", arguments.eyes,
+           "Points at which the view out is assessed by EN 17037, in a file as for --points, whose directions are "
+           "ignored. The results are in view.csv")
         ->type_name("FILE");
     CLI::Option* views =
         app.add_option(
@@ -147,7 +151,9 @@ void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
 void declare(CLI::App& app, DaylightArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.get_option("SCENE")->description("Scene, or a solution (.h5) of it, whose own light is ignored");
-    app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus .epw)")->type_name("FILE")->required();
+    app.add_option("--epw", arguments.epw, "Weather of a year: .epw (EnergyPlus) or .wea (Radiance)")
+        ->type_name("FILE")
+        ->required();
     app.add_option(
            "--points", arguments.points,
            "Sensors in metres, each with the direction that it faces: CSV x,y,z,nx,ny,nz, .pts x y z dx dy dz, or a "

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "exitance/cli/options/option_kinds.hpp"
 
 namespace exitance {
@@ -44,10 +42,8 @@ void read_camera(const std::string& words, RenderArguments& arguments) {
     const std::vector<double> n = read_numbers("--camera", words);
     if (n.size() != 6 && n.size() != 7)
         throw CLI::ValidationError("--camera", fmt::format("'{}' is not 'ex,ey,ez tx,ty,tz fov'", words));
-    const Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (n.size() == 7) arguments.fov = n[6];
-    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "eye and target are the same point");
-    arguments.camera = camera;
+    arguments.camera = Camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
 }
 
 /// Reads a measuring plane "ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]", metres; spacing may be "auto".

@@ -88,13 +88,16 @@ void declare(CLI::App& app, GlareArguments& arguments) {
 }
 
 void declare_standards(CLI::App& app, ReportArguments& arguments) {
-    add_planes(app, "--plane", arguments.working_planes, false,
-               "Working plane of EN 12464-1: '0.75' (metres above the floor), or named faces: 'desk' (on them) or "
-               "'hall,height=0.75'; further border=B (default 0.5 m above floors) and spacing=S (default: the "
-               "standard's); around=0.5 also measures the surroundings of named faces, and background=3 the background "
-               "around these. May be given several times");
+    add_planes(
+        app, "--plane", arguments.working_planes, false,
+        "Working plane of EN 12464-1: a height above the floor, '0.75', or named faces: 'desk' (light on them) or "
+        "'hall,height=0.75' (above them). After commas, all in metres: border=B, the strip along walls that does "
+        "not count (default 0.5 above floors); spacing=S, the distance of points (default that of the standard); "
+        "around=W and background=W, widths of the surroundings of named faces and of the background around "
+        "these, which are then measured, too. May be given several times");
     add_planes(app, "--cylindrical", arguments.working_planes, true,
-               "Plane for cylindrical illuminance, '1.2' or 'hall,height=1.6'. May be given several times");
+               "Plane on which cylindrical illuminance is measured, such as '1.2' (metres above the floor) or "
+               "'hall,height=1.6'. May be given several times");
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",
                  "Maintenance factor, at most 1, by which light on planes is multiplied. Default 1")
         ->check(CLI::Range(0.0, 1.0));

@@ -1,7 +1,5 @@
 #include "exitance/cli/solve/settle_options.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <utility>
 

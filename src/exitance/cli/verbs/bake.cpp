@@ -46,6 +46,15 @@ Result<std::vector<std::string>> bake_groups(const Solution& whole, const LightG
     return names;
 }
 
+/// Writes the maps of a light group in the first process. Returns false if they are not finished.
+template <class Maps, class Write>
+Result<bool> write_group(const Result<Maps>& maps, const StopRequest& stop, const Write& write) {
+    if (!maps) return maps.error();
+    if (stop.requested()) return false;
+    const Result<void> written = by_first(write);
+    return written ? Result<bool>(true) : written.error();
+}
+
 /// Notes a stop before all groups were finished. Returns the program's exit code.
 ExitCode end_of_groups(const LightGroups& groups, const std::vector<std::string>& names, const CommonStop& stop,
                        Terminal& terminal) {
@@ -144,11 +153,8 @@ ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution,
     if (stop.requested()) return common.fail("the light maps are not finished");
     const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
         const Result<UvLightMaps> own = bake_uv_light_maps(RadiosityFunction(lit), set, options, progress, stop);
-        if (!own) return own.error();
-        if (stop.requested()) return false;
-        const Result<void> written =
-            by_first([&] { return write_uv_pictures(lit.scene, *own, group, arguments.format, arguments.output); });
-        return written ? Result<bool>(true) : written.error();
+        return write_group(
+            own, stop, [&] { return write_uv_pictures(lit.scene, *own, group, arguments.format, arguments.output); });
     };
     const Result<std::vector<std::string>> names = bake_groups(solution, groups, progress, stop, bake_group);
     progress.finish();
@@ -204,11 +210,9 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     options.density = maps->density;  // gives all groups the same charts
     const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
         const Result<LightMaps> own = bake_light_maps(RadiosityFunction(lit), options, terminal.progress(), stop);
-        if (!own) return own.error();
-        if (stop.requested()) return false;
-        const Result<void> written = by_first(
-            [&] { return write_group_light_maps(lit.scene, *own, group, arguments.format, arguments.output); });
-        return written ? Result<bool>(true) : written.error();
+        return write_group(own, stop, [&] {
+            return write_group_light_maps(lit.scene, *own, group, arguments.format, arguments.output);
+        });
     };
     const Result<std::vector<std::string>> names =
         bake_groups(*solution, groups, terminal.progress(), stop, bake_group);

@@ -1,4 +1,6 @@
 #include "exitance/io/export/export.hpp"
+
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/named_files.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/export_links.hpp"
@@ -9,6 +11,7 @@ namespace exitance {
 
 /// Runs `exitance export SOLUTION -o FILE`.
 ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
+    set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
     const std::string scene_file = find_scene_file(solution->scene, arguments.solution);

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "exitance/base/words.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/atomic_file.hpp"

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/named_files.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"

@@ -72,11 +72,6 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
                      "omit one of them");
     if (shown && a.shadow_classes && !a.isolux)
         return usage("has no effect on shadow classes without --isolux", shown, "leave it out, or add --isolux");
-    const double most = a.projection == Projection::fisheye ? 360 : 170;
-    if (a.fov && a.projection == Projection::orthographic && !(*a.fov > 0))
-        return usage(fmt::format("width {} is not above 0 m", *a.fov), "--camera", "");
-    if (a.fov && a.projection != Projection::orthographic && !(*a.fov >= 1 && *a.fov <= most))
-        return usage(fmt::format("angle {} is not from 1 to {} degrees", *a.fov, most), "--camera", "");
     return std::nullopt;
 }
 

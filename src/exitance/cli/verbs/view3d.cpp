@@ -4,6 +4,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/cli/verbs/factor_facts.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
@@ -57,17 +58,8 @@ SparseFactors compute_factors(const View3dArguments& arguments, double eps, cons
     return compute_row_factors(scene, options, nullptr, terminal.progress(), stop);
 }
 
-/// Shows findings, except two kinds: that light is missing, which view factors do not need, and that encl and emit are
-/// ignored, which this verb takes into account.
-void show_findings(const LoadedScene& loaded, Terminal& terminal) {
-    std::vector<Finding> findings = loaded.findings;
-    std::erase_if(findings, [](const Finding& f) {
-        const auto begins = [&](const char* words) { return f.message.starts_with(words); };
-        return f.kind == Finding::Kind::warning &&
-               (begins("nothing emits light") || begins("'encl=") || begins("'emit="));
-    });
-    terminal.show(findings);
-}
+/// Beginnings of warnings that do not concern this verb: it needs no light, and takes encl and emit into account.
+constexpr std::string_view unneeded_warnings[]{missing_light[0], "'encl=", "'emit="};
 
 /// Replaces view factors by exchange factors of the gray surfaces.
 Result<void> take_exchange_factors(SparseFactors& table, const StopRequest& stop) {
@@ -105,7 +97,7 @@ ExitCode run(const View3dArguments& arguments, Terminal& terminal) {
     LoadOptions load;
     load.stop = &stop;
     const LoadedScene loaded = load_scene(std::vector<std::string>{arguments.input}, load);
-    show_findings(loaded, terminal);
+    show_findings_without(unneeded_warnings, loaded.findings, terminal);
     if (!loaded.scene) return terminal.fail(loaded);
     SparseFactors table = compute_factors(arguments, controls->eps, *loaded.scene, terminal, stop);
     if (stop.requested())

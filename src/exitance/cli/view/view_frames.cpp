@@ -14,9 +14,8 @@ ViewAnswer ViewFrames::take(const RadiosityFunction& light, const ViewServer::Pa
     const double width = (*size)[0], height = (*size)[1];
     PictureOptions options;
     options.camera = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6]};
-    if (options.camera.eye == options.camera.target || !(n[6] >= 1 && n[6] <= 170) || !(width >= 1 && height >= 1) ||
-        width > max_side || height > max_side || width * height > max_pixels || !((*samples)[0] >= 1) ||
-        (*samples)[0] > max_samples)
+    if (find_fault(options.camera) || !(width >= 1 && height >= 1) || width > max_side || height > max_side ||
+        width * height > max_pixels || !((*samples)[0] >= 1) || (*samples)[0] > max_samples)
         return view_misunderstood;
     options.size = {static_cast<int>(width), static_cast<int>(height)};
     options.samples = static_cast<int>((*samples)[0]);

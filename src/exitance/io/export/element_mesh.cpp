@@ -52,7 +52,7 @@ class CubicCells {
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const Weights &a = at[i], &b = at[(i + 1) % 3];
-            // The element that creates the points defines their direction, a to b.
+            // The first element of an edge creates its two points, ordered from a to b; its neighbour uses them.
             std::uint32_t& shared = thirds_[from_.nodes[t][3 + i]];
             edge[i] = shared;
             if (shared != none) continue;

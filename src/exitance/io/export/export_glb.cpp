@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 
@@ -17,11 +16,10 @@
 namespace exitance {
 namespace {
 
-/// Polygons of one group and material: a range of the vertices and of the indices.
+/// Polygons of one group and material.
 struct Primitive {
     std::size_t group = 0, material = 0;
-    std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
-    Float3 lo = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+    GlbPart part;
 };
 
 /// Arrays of the binary chunk, and their division into primitives.
@@ -44,13 +42,13 @@ Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
         const std::size_t i = order[k];
         if (k == 0 || key(i) != key(order[k - 1]))
             out.primitives.push_back({static_cast<std::size_t>(mesh.group[i]),
-                                      static_cast<std::size_t>(mesh.material[i]), out.position.size(), 0,
-                                      out.index.size(), 0});
-        Primitive& primitive = out.primitives.back();
+                                      static_cast<std::size_t>(mesh.material[i]),
+                                      {.first_vertex = out.position.size(), .first_index = out.index.size()}});
+        GlbPart& part = out.primitives.back().part;
         const Normal& n = solution.scene.regions()[RegionId(static_cast<std::size_t>(mesh.region[i]))].plane.n;
         conforming.for_triangles(i, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
             for (const std::uint32_t corner : {a, b, c})
-                out.index.push_back(static_cast<std::uint32_t>(primitive.vertices) + corner);
+                out.index.push_back(static_cast<std::uint32_t>(part.vertices) + corner);
         });
         for (std::uint32_t p = mesh.first_point[i]; p < mesh.first_point[i + 1]; ++p) {
             Spectrum light;
@@ -68,19 +66,12 @@ Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
             out.irradiance.push_back(irradiance);
             out.colour.push_back(
                 {static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])});
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                primitive.lo[axis] = std::min(primitive.lo[axis], out.position.back()[axis]);
-                primitive.hi[axis] = std::max(primitive.hi[axis], out.position.back()[axis]);
-            }
+            part.include(out.position.back());
         }
-        primitive.vertices = out.position.size() - primitive.first_vertex;
-        primitive.indices = out.index.size() - primitive.first_index;
+        part.vertices = out.position.size() - part.first_vertex;
+        part.indices = out.index.size() - part.first_index;
     }
     return out;
-}
-
-std::string json_triple(const auto& v) {
-    return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
 
 std::string material_json(const Material& material) {
@@ -102,14 +93,13 @@ std::string material_json(const Material& material) {
 constexpr const char* attribute_names[] = {"POSITION", "NORMAL", "_RADIOSITY", "_IRRADIANCE", "COLOR_0"};
 constexpr std::size_t attributes = std::size(attribute_names);
 
-/// Builds JSON lists, with commas between items.
+/// JSON lists of a document, without brackets.
 struct Lists {
     std::string nodes, meshes, accessors;
     std::size_t node_count = 0, accessor_count = 0;
 
-    static void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ",") + item; }
     std::size_t add_accessor(const std::string& item) {
-        add(accessors, item);
+        add_item(accessors, item);
         return accessor_count++;
     }
 };
@@ -117,15 +107,10 @@ struct Lists {
 std::string primitive_json(const Primitive& p, Lists& lists) {
     std::string names;
     for (std::size_t a = 0; a < attributes; ++a) {
-        std::string accessor =
-            fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"",
-                        a, p.first_vertex * sizeof(Float3), p.vertices);
-        if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", json_triple(p.lo), json_triple(p.hi));
-        Lists::add(names, fmt::format("\"{}\":{}", attribute_names[a], lists.add_accessor(accessor + "}")));
+        const std::string accessor = vertex_accessor(p.part, a, sizeof(Float3), "VEC3", a == 0);
+        add_item(names, fmt::format("\"{}\":{}", attribute_names[a], lists.add_accessor(accessor)));
     }
-    const std::size_t indices = lists.add_accessor(
-        fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
-                    attributes, p.first_index * 4, p.indices));
+    const std::size_t indices = lists.add_accessor(index_accessor(p.part, attributes));
     return fmt::format("{{\"attributes\":{{{}}},\"indices\":{},\"material\":{}}}", names, indices, p.material);
 }
 
@@ -134,10 +119,10 @@ void add_groups(const Scene& scene, std::span<const Primitive> primitives, Lists
     for (std::size_t first = 0, last = 0; first < primitives.size(); first = last) {
         std::string items;
         for (; last < primitives.size() && primitives[last].group == primitives[first].group; ++last)
-            Lists::add(items, primitive_json(primitives[last], lists));
+            add_item(items, primitive_json(primitives[last], lists));
         const std::string name = json_text(scene.groups()[GroupId(primitives[first].group)]);
-        Lists::add(lists.nodes, fmt::format("{{\"mesh\":{},\"name\":{}}}", lists.node_count++, name));
-        Lists::add(lists.meshes, fmt::format("{{\"name\":{},\"primitives\":[{}]}}", name, items));
+        add_item(lists.nodes, fmt::format("{{\"mesh\":{},\"name\":{}}}", lists.node_count++, name));
+        add_item(lists.meshes, fmt::format("{{\"name\":{},\"primitives\":[{}]}}", name, items));
     }
 }
 
@@ -145,10 +130,10 @@ std::string extensions_json(const Scene& scene, const GlbNodes& placed) {
     bool unlit = false, emits = false;
     for (const Material& m : scene.materials()) (m.emits() ? emits : unlit) = true;
     std::string used;
-    if (unlit) Lists::add(used, "\"KHR_materials_unlit\"");
-    if (emits) Lists::add(used, "\"KHR_materials_emissive_strength\"");
+    if (unlit) add_item(used, "\"KHR_materials_unlit\"");
+    if (emits) add_item(used, "\"KHR_materials_emissive_strength\"");
     if (placed.lights.empty()) return fmt::format("\"extensionsUsed\":[{}],", used);
-    Lists::add(used, "\"KHR_lights_punctual\"");
+    add_item(used, "\"KHR_lights_punctual\"");
     return fmt::format("\"extensionsUsed\":[{}],\"extensions\":{{\"KHR_lights_punctual\":{{\"lights\":[{}]}}}},", used,
                        placed.lights);
 }
@@ -157,18 +142,18 @@ std::string make_json(const Scene& scene, const Triangles& triangles, const Tone
     const GlbNodes placed = make_light_and_camera_nodes(scene);
     Lists lists;
     add_groups(scene, triangles.primitives, lists);
-    if (placed.count > 0) Lists::add(lists.nodes, placed.nodes);
+    if (placed.count > 0) add_item(lists.nodes, placed.nodes);
     std::string scene_nodes, materials, views;
-    for (std::size_t i = 0; i < lists.node_count + placed.count; ++i) Lists::add(scene_nodes, std::to_string(i));
-    for (const Material& m : scene.materials()) Lists::add(materials, material_json(m));
+    for (std::size_t i = 0; i < lists.node_count + placed.count; ++i) add_item(scene_nodes, std::to_string(i));
+    for (const Material& m : scene.materials()) add_item(materials, material_json(m));
     const std::size_t array_bytes = triangles.position.size() * sizeof(Float3),
                       index_bytes = triangles.index.size() * 4;
     for (std::size_t a = 0; a < attributes; ++a)
-        Lists::add(views, fmt::format(
-                              "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}}",
-                              a * array_bytes, array_bytes));
-    Lists::add(views, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
-                                  attributes * array_bytes, index_bytes));
+        add_item(views,
+                 fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"byteStride\":12,\"target\":34962}}",
+                             a * array_bytes, array_bytes));
+    add_item(views, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":34963}}",
+                                attributes * array_bytes, index_bytes));
     const LightUnit unit = own_unit(scene.is_photometric());
     std::string json = fmt::format(
         "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"lightUnit\":\"{}\","

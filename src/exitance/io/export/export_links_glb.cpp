@@ -7,25 +7,16 @@
 namespace exitance {
 namespace {
 
-std::string triple(const Float3& v) {
-    return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
-}
-
 /// Line meshes as JSON lists, and their vertices.
 class LineMeshes {
   public:
     /// Adds a mesh of lines, two points per line, metres, Z up.
     void add(const char* name, std::span<const Point> ends, const Float3& colour) {
         if (ends.empty()) return;
-        Float3 lo, hi;
-        lo.fill(HUGE_VALF), hi.fill(-HUGE_VALF);
-        const std::size_t first = vertices_.size();
+        GlbPart part{.first_vertex = vertices_.size(), .vertices = ends.size()};
         for (const Point& p : ends) {
-            // Z up becomes glTF's Y up.
-            const Float3 at{static_cast<float>(p.x), static_cast<float>(p.z), static_cast<float>(-p.y)};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                lo[axis] = std::min(lo[axis], at[axis]), hi[axis] = std::max(hi[axis], at[axis]);
-            vertices_.push_back(at);
+            vertices_.push_back(y_up(p));
+            part.include(vertices_.back());
         }
         const char* const comma = count_ > 0 ? "," : "";
         nodes_ += fmt::format("{}{{\"mesh\":{},\"name\":\"{}\"}}", comma, count_, name);
@@ -37,10 +28,7 @@ class LineMeshes {
             "{}{{\"name\":\"{}\",\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{},{},{},1]}},\"extensions\":{{"
             "\"KHR_materials_unlit\":{{}}}}}}",
             comma, name, colour[0], colour[1], colour[2]);
-        accessors_ += fmt::format(
-            "{}{{\"bufferView\":0,\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"VEC3\",\"min\":{},"
-            "\"max\":{}}}",
-            comma, first * sizeof(Float3), ends.size(), triple(lo), triple(hi));
+        add_item(accessors_, vertex_accessor(part, 0, sizeof(Float3), "VEC3", true));
         scene_ += fmt::format("{}{}", comma, count_++);
     }
 

@@ -46,16 +46,6 @@ ToneMap preview_tones(const Scene& scene, const LightMaps& light, LightMapQuanti
     return tones;
 }
 
-Image preview(const Scene& scene, const LightMaps& light, std::size_t m, LightMapQuantity quantity,
-              const ToneMap& tones) {
-    const LightMap& map = light.maps[m];
-    Image image(map.size.width, map.size.height);
-    for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
-        set_pixel(image, i, tones(texel_value(scene, map, chart, i, quantity)));
-    });
-    return image;
-}
-
 std::string triple_of_metres(const Vec3& v) {
     return fmt::format("[{},{},{}]", v.x, v.y, v.z);
 }
@@ -117,7 +107,8 @@ Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::opt
         const std::string exposure = fmt::format("{} in {} times {:.6g}, then a filmic curve", values_name(format),
                                                  unit_of(scene, format.quantity), tones.scale);
         const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
-        const Result<void> written = write_png(stem + ".png", preview(scene, light, m, format.quantity, tones), texts);
+        const Result<void> written =
+            write_png(stem + ".png", map_picture(scene, light, m, format.quantity, tones), texts);
         if (!written) return written;
         const Result<void> directed = write_directional(light.maps[m], m, group, scene, format, folder);
         if (!directed) return directed;
@@ -208,6 +199,16 @@ Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart
     const Material& material = scene.material(chart.region);
     const Spectrum emitted = map.has_emission ? material.exitance : Spectrum();
     return emitted + material.reflectance * irradiance;
+}
+
+Image map_picture(const Scene& scene, const LightMaps& light, std::size_t map, LightMapQuantity quantity,
+                  const ToneMap& tones) {
+    const LightMap& values = light.maps[map];
+    Image image(values.size.width, values.size.height);
+    for_each_texel(light, map, [&](const Chart& chart, std::size_t i) {
+        set_pixel(image, i, tones(texel_value(scene, values, chart, i, quantity)));
+    });
+    return image;
 }
 
 Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& light, std::size_t group,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exitance/io/pictures/linear_image.hpp"
+#include "exitance/io/pictures/png.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/measure/light_maps/light_map.hpp"
 
@@ -80,6 +81,10 @@ Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& 
 /// Each file appears whole or not at all.
 Result<void> write_light_maps(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
                               std::span<const std::string> groups, const std::string& folder);
+
+/// Returns a map's values as a tone-mapped picture.
+Image map_picture(const Scene& scene, const LightMaps& light, std::size_t map, LightMapQuantity quantity,
+                  const ToneMap& tones);
 
 /// Value of a texel of a chart in the given quantity, W/m^2.
 Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t index,

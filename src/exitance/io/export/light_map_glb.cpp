@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -20,11 +19,10 @@ namespace {
 
 using Float2 = std::array<float, 2>;
 
-/// Faces of one group, material and map: a range of the vertices and of the indices.
+/// Faces of one group, material and map.
 struct MapPrimitive {
     std::uint32_t group = 0, material = 0, map = 0;
-    std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
-    Float3 lo = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+    GlbPart part = {};
 
     auto key() const { return std::tuple(group, material, map); }
 };
@@ -43,13 +41,13 @@ Float2 floats(Vec2 v) {
 
 void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMaps& light,
               const SceneTextures* textures, Mesh& mesh) {
-    MapPrimitive& primitive = mesh.primitives.back();
+    GlbPart& part = mesh.primitives.back().part;
     const MapSize size = light.maps[chart.map].size;
     const Surface& face = scene.surfaces()[s];
     const std::span<const Point> outline = scene.outline(s);
     for (const auto& triangle : triangulate(outline, face.normal))
         for (const std::uint32_t corner : triangle)
-            mesh.index.push_back(static_cast<std::uint32_t>(primitive.vertices + corner));
+            mesh.index.push_back(static_cast<std::uint32_t>(part.vertices + corner));
     for (std::size_t k = 0; k < outline.size(); ++k) {
         const Vec2 place = chart.place(outline[k]);
         mesh.position.push_back(y_up(outline[k])), mesh.normal.push_back(y_up(face.normal));
@@ -58,13 +56,10 @@ void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMa
         if (textures && textures->has_second_set())
             mesh.second_place.push_back(floats(textures->places[1][face.first_corner + k]));
         mesh.map_place.push_back(floats({(chart.x + place.x) / size.width, (chart.y + place.y) / size.height}));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            primitive.lo[axis] = std::min(primitive.lo[axis], mesh.position.back()[axis]);
-            primitive.hi[axis] = std::max(primitive.hi[axis], mesh.position.back()[axis]);
-        }
+        part.include(mesh.position.back());
     }
-    primitive.vertices = mesh.position.size() - primitive.first_vertex;
-    primitive.indices = mesh.index.size() - primitive.first_index;
+    part.vertices = mesh.position.size() - part.first_vertex;
+    part.indices = mesh.index.size() - part.first_index;
 }
 
 Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* textures) {
@@ -80,7 +75,7 @@ Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* 
     for (const SurfaceId s : order) {
         MapPrimitive primitive = primitive_of(s);
         if (mesh.primitives.empty() || mesh.primitives.back().key() != primitive.key()) {
-            primitive.first_vertex = mesh.position.size(), primitive.first_index = mesh.index.size();
+            primitive.part = {.first_vertex = mesh.position.size(), .first_index = mesh.index.size()};
             mesh.primitives.push_back(primitive);
         }
         add_face(scene, s, light.charts[scene.surfaces()[s].region.value], light, textures, mesh);
@@ -146,17 +141,12 @@ Image texture(const Scene& scene, const LightMaps& shown, std::size_t m, LightMa
     return image;
 }
 
-template <class Triple>
-std::string triple_of(const Triple& v) {
-    return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
-}
-
 /// Formats an emissive colour; components above 1 are expressed by its strength. `texture` is empty or ",...".
 std::string emission(std::array<double, 3> colour, const std::string& texture, std::string& extensions) {
     const double strength = std::max({colour[0], colour[1], colour[2], 1e-30});
     for (double& c : colour) c /= strength;
     extensions += fmt::format(",\"KHR_materials_emissive_strength\":{{\"emissiveStrength\":{}}}", strength);
-    return fmt::format(",\"emissiveFactor\":{}{}", triple_of(colour), texture);
+    return fmt::format(",\"emissiveFactor\":{}{}", json_triple(colour), texture);
 }
 
 /// Images and textures of a document: the maps, then one per material with its own picture.
@@ -210,12 +200,8 @@ std::string map_material_json(const Scene& scene, MaterialId id, std::size_t map
     return fmt::format(
         "{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":{},\"metallicFactor\":0,\"roughnessFactor\":1{}}}"
         "{},\"extensions\":{{{}}},\"extras\":{{\"reflectance\":{},\"exitance\":{}}}}}",
-        json_text(material.name), base, base_texture, emitted, extensions.substr(1), triple_of(rho),
-        triple_of(exitance));
-}
-
-void add(std::string& list, const std::string& item) {
-    list += (list.empty() ? "" : ",") + item;
+        json_text(material.name), base, base_texture, emitted, extensions.substr(1), json_triple(rho),
+        json_triple(exitance));
 }
 
 /// Builds the JSON of a document. The binary chunk has one view per array, then one per texture.
@@ -231,12 +217,12 @@ class Document {
         for (std::size_t first = 0, last = 0; first < mesh.primitives.size(); first = last) {
             std::string items;
             for (; last < mesh.primitives.size() && mesh.primitives[last].group == mesh.primitives[first].group; ++last)
-                add(items, primitive_json(mesh.primitives[last],
-                                          numbers.at({mesh.primitives[last].material, mesh.primitives[last].map})));
+                add_item(items, primitive_json(mesh.primitives[last], numbers.at({mesh.primitives[last].material,
+                                                                                  mesh.primitives[last].map})));
             const std::string name = json_text(scene.groups()[GroupId(mesh.primitives[first].group)]);
-            add(scene_nodes_, std::to_string(nodes_count_));
-            add(nodes_, fmt::format("{{\"mesh\":{},\"name\":{}}}", nodes_count_++, name));
-            add(meshes_, fmt::format("{{\"name\":{},\"primitives\":[{}]}}", name, items));
+            add_item(scene_nodes_, std::to_string(nodes_count_));
+            add_item(nodes_, fmt::format("{{\"mesh\":{},\"name\":{}}}", nodes_count_++, name));
+            add_item(meshes_, fmt::format("{{\"name\":{},\"primitives\":[{}]}}", name, items));
         }
     }
 
@@ -249,8 +235,8 @@ class Document {
         // Lights are already in the maps, so viewers must not add them. Cameras come after lights among the nodes.
         std::string cameras;
         if (scene_.lights().empty() && placed.count > 0) {
-            add(nodes_, placed.nodes), cameras = fmt::format("\"cameras\":[{}],", placed.cameras);
-            for (std::size_t i = 0; i < placed.count; ++i) add(scene_nodes_, std::to_string(nodes_count_ + i));
+            add_item(nodes_, placed.nodes), cameras = fmt::format("\"cameras\":[{}],", placed.cameras);
+            for (std::size_t i = 0; i < placed.count; ++i) add_item(scene_nodes_, std::to_string(nodes_count_ + i));
         }
         std::string json = fmt::format(
             "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"exitance {}\",\"extras\":{{\"exposure\":{},"
@@ -267,7 +253,7 @@ class Document {
 
   private:
     void add_view(std::size_t bytes, const std::string& more) {
-        add(views_, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}{}}}", bytes_, bytes, more));
+        add_item(views_, fmt::format("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}{}}}", bytes_, bytes, more));
         bytes_ += (bytes + 3) / 4 * 4;
     }
     void add_views() {
@@ -281,17 +267,10 @@ class Document {
         std::string attributes;
         const std::vector<VertexArray> arrays = vertex_arrays(mesh_);
         for (std::size_t a = 0; a < arrays.size(); ++a) {
-            std::string accessor =
-                fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"{}\"",
-                            a, p.first_vertex * arrays[a].stride, p.vertices, a < 2 ? "VEC3" : "VEC2");
-            if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", triple_of(p.lo), triple_of(p.hi));
-            add(accessors_, accessor + "}");
-            add(attributes, fmt::format("\"{}\":{}", arrays[a].name, accessor_count_++));
+            add_item(accessors_, vertex_accessor(p.part, a, arrays[a].stride, a < 2 ? "VEC3" : "VEC2", a == 0));
+            add_item(attributes, fmt::format("\"{}\":{}", arrays[a].name, accessor_count_++));
         }
-        add(accessors_,
-            fmt::format(
-                "{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5125,\"count\":{},\"type\":\"SCALAR\"}}",
-                arrays.size(), p.first_index * 4, p.indices));
+        add_item(accessors_, index_accessor(p.part, arrays.size()));
         return fmt::format("{{\"attributes\":{{{}}},\"indices\":{},\"material\":{}}}", attributes, accessor_count_++,
                            material);
     }
@@ -356,11 +335,11 @@ Result<void> write_light_map_glb(const Solution& solution, const LightMaps& ligh
     Document document(scene, mesh, *textures);
     std::string materials, used;
     for (const auto& [number, map] : document.materials())
-        add(materials, map_material_json(scene, MaterialId(number), map, material, tone, levels, *textures));
+        add_item(materials, map_material_json(scene, MaterialId(number), map, material, tone, levels, *textures));
     for (const char* extension : {"KHR_materials_unlit", "KHR_materials_emissive_strength", "MOZ_lightmap",
                                   "KHR_materials_specular", "KHR_materials_ior"})
         if (materials.find(fmt::format("\"{}\":", extension)) != std::string::npos)
-            add(used, fmt::format("\"{}\"", extension));
+            add_item(used, fmt::format("\"{}\"", extension));
     const std::string json = document.text(materials, used, tone, levels);
     std::vector<std::span<const std::byte>> parts;
     for (const VertexArray& array : vertex_arrays(mesh)) parts.push_back(array.bytes);

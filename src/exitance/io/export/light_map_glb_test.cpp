@@ -7,6 +7,7 @@
 #include "exitance/io/pictures/png.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "support/checked_scene.hpp"
 #include "support/gltf_text.hpp"
 #include "support/sample_solution.hpp"
 #include "support/temporary_folder.hpp"
@@ -46,13 +47,7 @@ std::string write_textured_floor(const TemporaryFolder& folder) {
 }
 
 Solution lit(const std::string& path) {
-    Solution s;
-    CheckedScene checked = make_scene(read_gltf(path, 0).description);
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    s.scene = std::move(*checked.scene);
-    s.indirect = sample_function(s.scene, 1, 0);
-    for (auto& value : s.indirect.values) value.fill(4);
-    s.interpolant = s.indirect;
+    Solution s = even_solution(checked_scene(read_gltf(path, 0).description), 4);
     s.direct_in_elements = true;
     return s;
 }

@@ -1,7 +1,6 @@
 #include "exitance/io/export/viewer_data.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "exitance/io/export/viewer_part.hpp"

@@ -48,7 +48,7 @@ std::uint32_t labels_of(std::uint32_t shadow, const std::array<std::uint32_t, 3>
 
 const ElementFunction& function_of(const Solution& solution, ViewerLayer layer) {
     if (layer == ViewerLayer::exported) return solution.interpolant;
-    // Kept links connect the elements of the method. Without them, its delivered elements are used.
+    // Links that the solution keeps come with the elements of the method; otherwise those of the solution are drawn.
     const bool keeps = layer == ViewerLayer::raw && !solution.links.links.empty();
     return keeps ? solution.links.elements : solution.indirect;
 }

@@ -11,6 +11,7 @@
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
+#include "support/own_programs.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance {
@@ -19,25 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = StopRequest::Clock;
 
-/// Installs the test's own programs under the names of Radiance's, first in PATH.
-class ScenePrograms : public testing::Test {
+/// Loads scenes with the test's own programs in place of Radiance's.
+class ScenePrograms : public OwnPrograms {
   protected:
-    void SetUp() override {
-        path_ = std::getenv("PATH");
-        ::setenv("PATH", (std::string(folder_ / ".") + ":" + path_).c_str(), 1);
-    }
-    void TearDown() override { ::setenv("PATH", path_.c_str(), 1); }
-    void make(const std::string& name, const std::string& script) {
-        ASSERT_TRUE(write_file(folder_ / name, "#!/bin/sh\n" + script));
-        fs::permissions(std::string(folder_ / name), fs::perms::owner_all);
-    }
     CheckedScene load(const std::string& text, bool run_commands) {
         EXPECT_TRUE(write_file(folder_ / "s.rad", text));
         const std::string path = folder_ / "s.rad";
         return load_scene(std::span(&path, 1), {.run_commands = run_commands});
     }
-    TemporaryFolder folder_;
-    std::string path_;
     const StopRequest never_{};
 };
 

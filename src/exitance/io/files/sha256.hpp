@@ -12,7 +12,7 @@ namespace exitance {
 class Sha256 {
   public:
     void add(std::string_view bytes);
-    /// Adds a text with its length before it, so that the limits between texts count.
+    /// Adds a text with its length before it, so that a text's end matters.
     void add_text(std::string_view text);
     /// Returns the hash as 64 hexadecimal digits. Must be called once, last.
     std::string finish();

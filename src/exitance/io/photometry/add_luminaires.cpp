@@ -9,6 +9,7 @@
 #include "exitance/io/photometry/luminaire_type.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/photometry/placed_luminaire.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
@@ -107,14 +108,11 @@ void Luminaires::add(const PlacedLuminaire& luminaire) {
                                  output * scene_.luminaire_types[lamp->type].flux, luminaire.maintenance});
     scene_.groups.push_back(fmt::format("{} #{}", luminaire.group.empty() ? "luminaire" : luminaire.group, count_));
     for (const LuminaireBody::Face& face : lamp->body.faces) {
-        SceneDescription::Face out;
+        SceneDescription::Face& out = add_polygon(scene_, face.corners, [&](const Point& p) {
+            return luminaire.position + p.x * luminaire.x + p.y * luminaire.y + p.z * luminaire.z;
+        });
         out.material = material_of(*lamp, luminaire, face.exitance, factor);
         out.group = group;
-        for (const Point& p : face.corners) {
-            out.corners.push_back(static_cast<std::uint32_t>(scene_.points.size()));
-            scene_.points.push_back(luminaire.position + p.x * luminaire.x + p.y * luminaire.y + p.z * luminaire.z);
-        }
-        scene_.faces.push_back(std::move(out));
     }
 }
 

@@ -1,6 +1,5 @@
 #include "exitance/io/photometry/luminaire_type.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 

@@ -73,7 +73,7 @@ struct Photometry {
 /// Angular range in a plane through the axis in which the intensity is at least a share of the maximum: degrees from
 /// the axis to each side, at most 90. The plane is spanned by the axis and the unit vector `towards`.
 struct BeamSpread {
-    double left = 0, right = 0;  ///< Angles towards -towards and towards +towards.
+    double left = 0, right = 0;  ///< Degrees from the axis, away from `towards` and to it.
     double whole() const { return left + right; }
 };
 /// Computes the spread for a `share` of the largest intensity in that plane below the horizontal: 0.5 for the beam
@@ -81,7 +81,7 @@ struct BeamSpread {
 /// angles from the zenith. If the maximum is off the axis, the range extends to the last direction with that share.
 BeamSpread beam_spread(const Photometry& p, const Vec3& towards, double share);
 
-/// Angle between the last entry of a table that does not end at 0 and the 0 that is added, degrees.
+/// Degrees from the last entry of a table, if its intensity is not 0, to the 0 that is added behind it.
 inline constexpr double table_jump = 1e-6;
 
 /// Adds a finding of kind `repair` or `warning`.

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// Units in which HDF5 files store lux.
+/// How HDF5 files store illuminances: numbers of the type `Number` in a unit of so many lux.
 template <class Number>
 struct Stored {
     static constexpr double unit = 1;

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "exitance/base/words.hpp"
 #include "exitance/io/photometry/polar_diagram.hpp"
 #include "exitance/io/report/luminaire_schedule.hpp"

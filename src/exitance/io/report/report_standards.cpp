@@ -27,7 +27,7 @@ std::string cell(double value) {
     return std::isfinite(value) ? figure(value) : "";
 }
 
-/// Formats a csv_field CSV field.
+/// Formats a text as a quoted field of CSV.
 std::string csv_field(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);

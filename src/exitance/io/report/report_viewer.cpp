@@ -12,16 +12,6 @@
 namespace exitance {
 namespace {
 
-/// Picture of a map's radiosity, tone mapped.
-Image toned_map(const Scene& scene, const LightMaps& light, std::size_t m, const ToneMap& tone) {
-    const LightMap& map = light.maps[m];
-    Image image(map.size.width, map.size.height);
-    for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
-        set_pixel(image, i, tone(texel_value(scene, map, chart, i, LightMapQuantity::radiosity)));
-    });
-    return image;
-}
-
 /// Corners (x, y, z, u, v) and triangles of all faces that are in one map.
 struct Triangles {
     std::vector<float> corners;
@@ -133,7 +123,8 @@ Result<std::string> report_viewer(const ReportContent& content) {
     tone.curve = ToneCurve::filmic;
     std::string parts;
     for (std::size_t m = 0; m < content.viewer->maps.size(); ++m) {
-        const Result<std::string> picture = data_address(toned_map(scene, *content.viewer, m, tone));
+        const Result<std::string> picture =
+            data_address(map_picture(scene, *content.viewer, m, LightMapQuantity::radiosity, tone));
         if (!picture) return picture.error();
         const Triangles triangles = triangles_of(scene, *content.viewer, m);
         parts += fmt::format("{}{{corners:\"{}\",index:\"{}\",picture:\"{}\"}}", m > 0 ? "," : "",

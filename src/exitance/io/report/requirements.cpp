@@ -29,7 +29,7 @@ Error misuse(const std::string& words, const std::string& why) {
 /// immediate surrounding area".
 double light_of_surroundings(double task) {
     constexpr std::array<std::pair<double, double>, 3> steps{
-        {{750, 500}, {500, 300}, {300, 200}}};  // lx, derived from the table: least light of the task, surroundings
+        {{750, 500}, {500, 300}, {300, 200}}};  // lx, derived from the table: task, surroundings
     for (const auto& [least, surroundings] : steps)
         if (task >= least) return surroundings;
     return std::min(task, steps.back().second);
@@ -157,7 +157,7 @@ Result<Requirement> read_requirement(const std::string& words) {
         std::string more;
         if (!(in >> limit.quantity >> limit.value) || in >> more || !(limit.value > 0) || !std::isfinite(limit.value))
             return misuse(words, fmt::format("'{}' is not a quantity and a positive number{}", without_blanks(item),
-                                             more.empty() ? "" : "; separate computed_quantities by commas"));
+                                             more.empty() ? "" : "; separate quantities by commas"));
         if (std::find(computed_quantities.begin(), computed_quantities.end(), limit.quantity) ==
             computed_quantities.end())
             return misuse(words, fmt::format("'{}' is not Em, U0, Ez or UGR", limit.quantity));

@@ -14,6 +14,7 @@
 #include "exitance/io/scenes/bridged_holes.hpp"
 #include "exitance/io/scenes/gltf/json_shape.hpp"
 #include "exitance/io/scenes/json_members.hpp"
+#include "exitance/scene/add_polygon.hpp"
 
 namespace exitance {
 namespace {
@@ -224,13 +225,8 @@ class CityJsonReader {
         SceneDescription& d = out_.description;
         const auto [known, is_new] = materials_.try_emplace(kind, static_cast<std::uint32_t>(d.materials.size()));
         if (is_new) d.materials.push_back({kind.empty() ? "default" : kind, Spectrum(0.5), Spectrum()});
-        SceneDescription::Face face;
-        for (const Point& p : outline) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
+        SceneDescription::Face& face = add_polygon(d, outline);
         face.material = known->second, face.group = group_;
-        d.faces.push_back(std::move(face));
     }
 
     void warn() {
@@ -275,10 +271,7 @@ class CityJsonReader {
 ReadScene read_cityjson(const std::string& path, const std::string& lod) {
     const Result<std::string> text = read_whole_file(path);
     if (text) return CityJsonReader(path, lod).read(*text);
-    ReadScene out;
-    out.description.file = path;
-    out.findings.push_back({Finding::Kind::error, path, 0, text.error().message, ""});
-    return out;
+    return unreadable_scene(path, text.error().message);
 }
 
 }  // namespace exitance

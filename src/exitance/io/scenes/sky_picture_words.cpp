@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/pictures/read_directional.hpp"
@@ -45,15 +46,10 @@ Result<void> read_number(const std::string& word, PictureWords& out) {
 
 Result<PictureWords> read_picture_words(const std::string& text) {
     PictureWords out;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string word = text.substr(begin, end - begin);
-        if (begin == 0)
-            out.path = word.substr(first_word.size());
-        else if (const Result<void> read = read_number(word, out); !read)
-            return read.error();
-        begin = end + 1;
-    }
+    const std::vector<std::string> words = split_at_commas(text);
+    out.path = words.front().substr(first_word.size());
+    for (std::size_t i = 1; i < words.size(); ++i)
+        if (const Result<void> read = read_number(words[i], out); !read) return read.error();
     if (out.path.empty()) return wrong_word("the picture's file is missing after image=");
     return out;
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/scenes/sky_picture_words.hpp"
@@ -111,16 +112,16 @@ Result<void> read_pair(const std::string& word, Words& out) {
 
 Result<Words> read_words(const std::string& text) {
     Words out;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string word = text.substr(begin, end - begin);
-        if (begin == 0)
-            out.kind = word;
-        else if (const Result<void> read = read_pair(word, out); !read)
-            return read.error();
-        begin = end + 1;
-    }
+    const std::vector<std::string> words = split_at_commas(text);
+    out.kind = words.front();
+    for (std::size_t i = 1; i < words.size(); ++i)
+        if (const Result<void> read = read_pair(words[i], out); !read) return read.error();
     return out;
+}
+
+/// True for skies that have a sun only if its irradiance is given.
+bool is_without_sun(const std::string& kind) {
+    return kind == "uniform" || kind == "overcast";
 }
 
 int cie_type(const std::string& kind) {
@@ -168,6 +169,46 @@ DistantLight make_light(const SkyModel& sky, const Normal& sun, double diffuse, 
     return out;
 }
 
+/// Returns the hour of the weather file at the time of the words; null without a weather file.
+Result<const WeatherHour*> find_hour(const Words& words, const Weather* weather) {
+    if (!weather) return static_cast<const WeatherHour*>(nullptr);
+    if (!words.time) return wrong("a weather file needs a time", "time=06-21T12:00");
+    const WeatherHour* hour = weather->at(words.time->month, words.time->day, std::min(words.time->hour, 23.999999));
+    if (!hour || hour->is_missing)
+        return wrong(fmt::format("the weather file has no irradiances for {:02}-{:02}, {:.2f} h", words.time->month,
+                                 words.time->day, words.time->hour));
+    return hour;
+}
+
+/// Irradiances of the ground by the sky, and by the sun of a plane that faces it, W/m^2.
+struct SkyIrradiances {
+    double diffuse = 0, direct = 0;
+};
+
+/// Returns the irradiances of the words or else of the weather file. `hour` may be null.
+Result<SkyIrradiances> find_irradiances(const Words& words, const WeatherHour* hour) {
+    if (!words.has("dhi") && !hour)
+        return wrong("dhi, the irradiance of the ground by the sky, is missing",
+                     "dhi=120 (W/m^2), or a weather file by --epw");
+    if (words.kind == "perez" && !words.has("dni") && !hour)
+        return wrong("dni, the irradiance by the sun of a plane that faces it, is missing", "dni=700 (W/m^2)");
+    SkyIrradiances out{words.get("dhi", hour ? hour->diffuse_horizontal : 0),
+                       words.get("dni", hour ? hour->direct_normal : 0)};
+    // Uniform and overcast skies have no sun by default.
+    if (is_without_sun(words.kind) && !words.has("dni")) out.direct = 0;
+    return out;
+}
+
+/// Returns the distribution of a sky's luminance. `cie`: its number in CIE's list, or 0.
+SkyModel model_of(const Words& words, int cie, const Normal& towards, const SkyIrradiances& light) {
+    if (cie > 0) return cie_sky(cie, towards);
+    if (words.kind == "perez") {
+        const int day = words.time ? day_of_year(words.time->year, words.time->month, words.time->day) : 80;
+        return perez_sky({light.diffuse, light.direct, day}, towards);
+    }
+    return words.kind == "overcast" ? overcast_sky() : uniform_sky();
+}
+
 }  // namespace
 
 std::string sky_help() {
@@ -184,53 +225,36 @@ Result<ChosenSky> parse_sky(const std::string& text, const Weather* weather) {
     const Result<Words> read = read_words(text);
     if (!read) return read.error();
     const Words& words = *read;
-    const bool perez = words.kind == "perez", plain = words.kind == "uniform" || words.kind == "overcast";
+    const bool perez = words.kind == "perez";
     const int type = cie_type(words.kind);
-    if (!perez && !plain && type == 0)
+    if (!perez && !is_without_sun(words.kind) && type == 0)
         return wrong(fmt::format("'{}' is not a kind of sky", shown(words.kind)), sky_help());
     const Result<std::optional<Normal>> sun = find_sun(words, weather);
     if (!sun) return sun.error();
 
-    const WeatherHour* hour = nullptr;
-    if (weather) {
-        if (!words.time) return wrong("a weather file needs a time", "time=06-21T12:00");
-        hour = weather->at(words.time->month, words.time->day, std::min(words.time->hour, 23.999999));
-        if (!hour || hour->is_missing)
-            return wrong(fmt::format("the weather file has no irradiances for {:02}-{:02}, {:.2f} h", words.time->month,
-                                     words.time->day, words.time->hour));
-    }
-    if (!words.has("dhi") && !hour)
-        return wrong("dhi, the irradiance of the ground by the sky, is missing",
-                     "dhi=120 (W/m^2), or a weather file by --epw");
-    if (perez && !words.has("dni") && !hour)
-        return wrong("dni, the irradiance by the sun of a plane that faces it, is missing", "dni=700 (W/m^2)");
-    const double diffuse = words.get("dhi", hour ? hour->diffuse_horizontal : 0);
-    double direct = words.get("dni", hour ? hour->direct_normal : 0);
-    if (plain && !words.has("dni")) direct = 0;  // uniform and overcast skies have no sun by default
-    const bool goes_by_sun = perez || direct > 0 || (type > 0 && !(type == 1 || type == 3 || type == 5));
+    const Result<const WeatherHour*> hour = find_hour(words, weather);
+    if (!hour) return hour.error();
+    const Result<SkyIrradiances> found = find_irradiances(words, *hour);
+    if (!found) return found.error();
+    SkyIrradiances light = *found;
+    const bool goes_by_sun = perez || light.direct > 0 || (type > 0 && !(type == 1 || type == 3 || type == 5));
     if (goes_by_sun && !*sun)
         return wrong(fmt::format("where the sun stands is missing for {}", words.kind),
                      "altitude=50,azimuth=180, or lat=47.4,lon=8.5,time=06-21T12:00");
     const Normal towards = sun->value_or(Normal{0, 0, 1});
     const double half_disc = sun_half_angle * 180 / pi;
-    if (direct > 0 && towards.z <= -std::sin(half_disc * pi / 180)) {
+    if (light.direct > 0 && towards.z <= -std::sin(half_disc * pi / 180)) {
         if (words.has("dni")) return wrong("the sun is below the horizon, and dni is not 0");
-        direct = 0;
+        light.direct = 0;
     }
-    SkyModel sky = uniform_sky();
-    if (words.kind == "overcast") sky = overcast_sky();
-    if (type > 0) sky = cie_sky(type, towards);
-    if (perez) {
-        const int day = words.time ? day_of_year(words.time->year, words.time->month, words.time->day) : 80;
-        sky = perez_sky({diffuse, direct, day}, towards);
-    }
+    SkyModel sky = model_of(words, type, towards, light);
     if (!sky.normalize()) return wrong("this sky has no light");
     const double ground = words.get("ground", default_ground);
     const bool in_lumens = words.has("efficacy_direct") || words.has("efficacy_diffuse");
     ChosenSky out;
-    out.in_watts = make_light(sky, towards, diffuse, direct, ground);
-    out.in_lumens = make_light(sky, towards, words.get("efficacy_diffuse", efficacy_of_sky) * diffuse,
-                               words.get("efficacy_direct", efficacy_of_sun) * direct, ground);
+    out.in_watts = make_light(sky, towards, light.diffuse, light.direct, ground);
+    out.in_lumens = make_light(sky, towards, words.get("efficacy_diffuse", efficacy_of_sky) * light.diffuse,
+                               words.get("efficacy_direct", efficacy_of_sun) * light.direct, ground);
     if (in_lumens) out.photometric = true;
     if (out.in_watts.empty()) return wrong("this sky has no light", "it is night, or dhi and dni are 0");
     return out;

@@ -9,6 +9,7 @@
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/scene/add_polygon.hpp"
 
 namespace exitance {
 namespace {
@@ -54,24 +55,19 @@ class StlReader {
                bytes.size() == header_bytes + triangle_bytes * std::size_t(count_of(bytes));
     }
 
-    void add_triangle(const Point* corners, int line) {
+    void add_triangle(const std::vector<Point>& corners, int line) {
         SceneDescription& d = out_.description;
         if (d.groups.empty()) d.groups.push_back("default");
-        SceneDescription::Face face;
-        for (int k = 0; k < 3; ++k) {
-            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(corners[k]);
-        }
+        SceneDescription::Face& face = add_polygon(d, corners);
         face.group = static_cast<std::uint32_t>(d.groups.size() - 1);
         face.line = line;
-        d.faces.push_back(std::move(face));
     }
 
     void read_binary(const std::string& bytes) {
         for (std::uint32_t t = 0; t < count_of(bytes); ++t) {
             float numbers[9];
             std::memcpy(numbers, bytes.data() + header_bytes + triangle_bytes * t + 12, sizeof numbers);
-            Point corners[3];
+            std::vector<Point> corners(3);
             bool finite = true;
             for (std::size_t k = 0; k < 9; ++k) {
                 finite &= std::isfinite(numbers[k]);
@@ -112,7 +108,7 @@ class StlReader {
                 if (corners.size() != 3)
                     error(begun, fmt::format("a loop has {} vertices, not three", corners.size()));
                 else if (sound)
-                    add_triangle(corners.data(), begun);
+                    add_triangle(corners, begun);
                 corners.clear();
             } else if (key != "facet" && key != "endfacet" && key != "endsolid") {
                 return error(lines.number(), fmt::format("'{}' is not a keyword of STL", shown(key)));

@@ -12,6 +12,7 @@
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/view3d_controls.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/scene/findings.hpp"
 #include "exitance/scene/joining/outline.hpp"
 #include "exitance/scene/joining/uncross.hpp"
@@ -335,15 +336,10 @@ class View3dReader {
             const Piece& piece = pieces_[k - 1];
             if (piece.kind == 'N') continue;
             for (const Polygon& part : piece.parts) {
-                SceneDescription::Face face;
-                for (const Point& p : part) {
-                    face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-                    d.points.push_back(p);
-                }
+                SceneDescription::Face& face = add_polygon(d, part);
                 face.material = material(piece.emittance);
                 face.group = piece.kind == 'O' ? obstructions : group[k];
                 face.line = piece.line;
-                d.faces.push_back(std::move(face));
             }
         }
     }
@@ -375,10 +371,7 @@ std::vector<View3dMask> read_view3d_masks(const std::string& path) {
 ReadScene read_view3d(const std::string& path) {
     const Result<std::string> text = read_whole_file(path);
     if (text) return View3dReader(path, *text).read();
-    ReadScene out;
-    out.description.file = path;
-    out.findings.push_back({Finding::Kind::error, path, 0, text.error().message, ""});
-    return out;
+    return unreadable_scene(path, text.error().message);
 }
 
 }  // namespace exitance

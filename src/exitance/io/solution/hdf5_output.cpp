@@ -6,7 +6,6 @@
 #endif
 
 #include <algorithm>
-#include <memory>
 
 namespace exitance {
 namespace {

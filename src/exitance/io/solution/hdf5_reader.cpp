@@ -1,7 +1,6 @@
 #include <hdf5.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 

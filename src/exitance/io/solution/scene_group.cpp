@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "exitance/io/solution/sky_group.hpp"
 #include "exitance/io/solution/solution_groups.hpp"

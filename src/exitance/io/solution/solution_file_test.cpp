@@ -12,6 +12,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/scene/add_polygon.hpp"
 #include "support/built_scene.hpp"
 #include "support/places.hpp"
 #include "support/sample_solution.hpp"
@@ -311,14 +312,8 @@ Scene scene_with_pane(double through) {
     d.file = "pane.obj";
     d.materials = {{"lamp", Spectrum(0.5), Spectrum(1)}, {"pane", Spectrum(0.7), Spectrum(0), {}, through}};
     d.groups = {"all"};
-    const auto face = [&](std::initializer_list<Point> corners, std::uint32_t material) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        f.material = material;
-        d.faces.push_back(std::move(f));
+    const auto face = [&](const std::vector<Point>& corners, std::uint32_t material) {
+        add_polygon(d, corners).material = material;
     };
     face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 0);
     face({{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, 1);

@@ -6,6 +6,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/measure/glare/view_triangle.hpp"
+#include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
@@ -36,17 +38,9 @@ Solution window_room(double window, double reflectance, double irradiance, const
     for (const Point& p : {Point{1, 5.999, 1}, {3, 5.999, 1}, {3, 5.999, 2.5}, {1, 5.999, 2.5}}) d.points.push_back(p);
     for (Point& p : d.points) p = motion(p);
     d.groups = {"room", "window"};
-    for (const std::vector<std::uint32_t>& f : std::vector<std::vector<std::uint32_t>>{
-             {0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}})
-        d.faces.push_back({f, 0, 0, 0});
+    for (const std::vector<std::uint32_t>& f : box_faces) d.faces.push_back({f, 0, 0, 0});
     d.faces.push_back({{8, 9, 10, 11}, 1, 1, 0});
-    CheckedScene made = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(made.scene));
-    Solution s;
-    s.scene = std::move(*made.scene);
-    s.indirect = sample_function(s.scene, 1, 0);
-    for (auto& value : s.indirect.values) value.fill(static_cast<float>(irradiance));
-    s.interpolant = s.indirect;
+    Solution s = even_solution(checked_scene(std::move(d)), irradiance);
     s.direct_share = Spectrum(1);
     return s;
 }
@@ -142,13 +136,7 @@ Solution sun_alone(double normal, const Normal& towards) {
     d.groups = {"ground"};
     d.faces.push_back({{0, 1, 2, 3}, 0, 0, 0});
     d.distant.discs = {{towards, 0.533 / 2 * pi / 180, Spectrum(normal)}};
-    CheckedScene made = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(made.scene));
-    Solution s;
-    s.scene = std::move(*made.scene);
-    s.indirect = sample_function(s.scene, 1, 0);
-    for (auto& value : s.indirect.values) value.fill(0.0F);
-    s.interpolant = s.indirect;
+    Solution s = even_solution(checked_scene(std::move(d)), 0);
     s.direct_share = Spectrum(1);
     return s;
 }

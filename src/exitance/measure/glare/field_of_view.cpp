@@ -1,7 +1,6 @@
 #include "exitance/measure/glare/field_of_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/direct/beams.hpp"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
@@ -16,9 +18,7 @@ Solution lamp_room(const std::vector<Vec2>& lamps, double half = 0.1) {
     d.materials = {{"wall", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(0.5), exitance_of_radiance(Spectrum(5000))}};
     for (const double z : {0.0, 3.0}) d.points.insert(d.points.end(), {{0, 0, z}, {8, 0, z}, {8, 6, z}, {0, 6, z}});
     d.groups = {"room"};
-    for (const std::vector<std::uint32_t>& f : std::vector<std::vector<std::uint32_t>>{
-             {0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}})
-        d.faces.push_back({f, 0, 0, 0});
+    for (const std::vector<std::uint32_t>& f : box_faces) d.faces.push_back({f, 0, 0, 0});
     for (const Vec2& at : lamps) {
         const auto first = static_cast<std::uint32_t>(d.points.size());
         for (const Vec2& o : {Vec2{-half, -half}, Vec2{-half, half}, Vec2{half, half}, Vec2{half, -half}})
@@ -27,14 +27,7 @@ Solution lamp_room(const std::vector<Vec2>& lamps, double half = 0.1) {
             {{first, first + 1, first + 2, first + 3}, 1, static_cast<std::uint32_t>(d.groups.size()), 0});
         d.groups.push_back("lamp " + std::to_string(d.groups.size()));
     }
-    CheckedScene made = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(made.scene));
-    Solution s;
-    s.scene = std::move(*made.scene);
-    s.indirect = sample_function(s.scene, 1, 0);
-    for (auto& value : s.indirect.values) value.fill(200.0F);
-    s.interpolant = s.indirect;
-    return s;
+    return even_solution(checked_scene(std::move(d)), 200);
 }
 
 TEST(Glare, AgreesWithAHandCalculationForARoom) {

@@ -174,7 +174,7 @@ std::vector<MapSize> pack_charts(std::vector<Chart>& charts, int padding, int mo
     const int width = std::max(
         widest, given_width > 0 ? given_width / unit * unit : std::min(round_up(square, unit), most / unit * unit));
     std::vector<Skyline> maps;
-    std::size_t first_open = 0;  // maps that have been full for a while are skipped
+    std::size_t first_open = 0;  // only the newest maps are searched, since older ones have little space
     for (const std::size_t i : order) {
         Chart& chart = charts[i];
         Skyline::Place place;

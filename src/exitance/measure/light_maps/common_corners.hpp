@@ -24,7 +24,7 @@ class CommonCorners {
   private:
     using Key = std::array<std::int64_t, 3>;
     /// Side of the cells within which corners are equal, as a share of the scene's size. Derived from the rounding of
-    /// single precision, and from no fraction of usual coordinates, whose corners would be at borders of cells.
+    /// single precision. It is no round number, since round coordinates would be at borders of its cells.
     static constexpr double cell_share = 0.7071e-6;
 
     Key key(const Point& p) const {

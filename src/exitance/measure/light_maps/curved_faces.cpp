@@ -79,7 +79,7 @@ CurvedPlace CurvedFaces::at(std::size_t triangle, const std::array<double, 3>& w
     for (std::size_t k = 0; k < 3; ++k) on_face += weight[k] * t.corner[k], n += weight[k] * t.normal[k];
     const Vec3 front = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
     const Point on_patch = patch_point(t, weight);
-    const double side = dot(front, n) < 0 ? -1 : 1;  // glTF's corners are in the order of the file
+    const double side = dot(front, n) < 0 ? -1 : 1;  // corners may be clockwise, as in glTF files
     return {side * dot(front, on_patch - on_face) > 0 ? on_patch : on_face, normalized(n), triangle, weight};
 }
 

@@ -7,6 +7,7 @@
 #include "exitance/measure/light_maps/light_map.hpp"
 #include "exitance/measure/light_maps/uv_light_map.hpp"
 #include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/motion.hpp"
 #include "support/solved.hpp"
 
@@ -29,22 +30,13 @@ std::vector<std::array<Point, 3>> sphere_triangles(int depth) {
     return out;
 }
 
-const std::array<Point, 4> lamp{{{2.5, 0.5, 4}, {2.5, -0.5, 4}, {1.5, -0.5, 4}, {1.5, 0.5, 4}}};
+const std::vector<Point> lamp{{2.5, 0.5, 4}, {2.5, -0.5, 4}, {1.5, -0.5, 4}, {1.5, 0.5, 4}};
 
 /// Triangles with normals at their corners, and a lamp above them.
 struct CurvedScene {
     Scene scene;
     std::vector<NormalTriangle> triangles;
 };
-
-void add_polygon(SceneDescription& d, std::span<const Point> corners, std::uint32_t material, const Motion& motion) {
-    SceneDescription::Face face{{}, material, 0, static_cast<int>(d.faces.size() + 1)};
-    for (const Point& p : corners) {
-        face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-        d.points.push_back(motion(p));
-    }
-    d.faces.push_back(face);
-}
 
 /// `normal(p)`: normal at a corner; `walls`: further grey polygons.
 template <class NormalAt>
@@ -55,12 +47,15 @@ CurvedScene curved_scene(const std::vector<std::array<Point, 3>>& triangles, con
     d.distant = sky;
     d.file = "test.obj", d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(8)}};
-    for (const auto& t : triangles) add_polygon(d, t, 0, motion);
-    for (const auto& wall : walls) add_polygon(d, wall, 0, motion);
-    add_polygon(d, lamp, 1, motion);
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    CurvedScene out{std::move(*checked.scene), {}};
+    const auto add = [&](const std::vector<Point>& corners) -> auto& {
+        SceneDescription::Face& face = add_polygon(d, corners, motion);
+        face.line = static_cast<int>(d.faces.size());
+        return face;
+    };
+    for (const auto& t : triangles) add({t.begin(), t.end()});
+    for (const auto& wall : walls) add(wall);
+    add(lamp).material = 1;
+    CurvedScene out{checked_scene(std::move(d)), {}};
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         NormalTriangle t{SurfaceId(i), {}, {}};
         for (std::size_t k = 0; k < 3; ++k)

@@ -75,7 +75,7 @@ void align_to_dominant(DirectedIrradiance& light, const Normal& n) {
     }
     const double cosine = dot(d, n);
     for (std::size_t b = 0; b < bands; ++b) {
-        // A slope in this range leaves the constant part at 0 or above.
+        // Up to this slope, the constant part own - along * cosine is not negative.
         const double most = cosine > 0 ? own[b] / cosine : HUGE_VAL;
         const double along = std::clamp(products[b] / squares, 0.0, std::max(most, 0.0));
         light.constant[b] = own[b] - along * cosine;

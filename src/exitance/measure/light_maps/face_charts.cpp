@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// Angles between neighbours, and between a face and the axis of its chart: derived from the bound of 0.77 on areas.
+/// Largest angle between a face and the axis of its chart: derived from areas, which shrink to 0.77 at most.
 constexpr double max_chart_angle = 40 * pi / 180;
 
 /// Neighbours of each region, across edges of faces.
@@ -80,7 +80,7 @@ class ChartGrower {
         for (const RegionId seed : order_)
             if (state_[seed] == State::left) out.push_back(grow_from(seed));
     }
-    /// Lets the regions from number `first` on grow again.
+    /// Takes the regions from number `first` on out of a chart, so that they are left for other charts.
     void release(FaceChart& chart, std::size_t first) {
         for (std::size_t i = first; i < chart.regions.size(); ++i) state_[chart.regions[i]] = State::left;
         chart.regions.resize(first);
@@ -89,7 +89,7 @@ class ChartGrower {
   private:
     enum class State : std::uint8_t { left, in_chart, taken };
 
-    /// Grows about the normal of the seed, then about the mean normal.
+    /// Makes the chart around a seed: first with the seed's normal as axis, then twice with the mean of the normals.
     FaceChart grow_from(RegionId seed) {
         constexpr int rounds = 3;
         FaceChart chart{{}, scene_.regions()[seed].plane.n};

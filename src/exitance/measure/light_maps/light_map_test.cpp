@@ -10,6 +10,7 @@
 #include "exitance/transport/open_points.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 #include "support/sample_solution.hpp"
 #include "support/solved.hpp"
 
@@ -21,18 +22,12 @@ using Source = LightMap::Source;
 Scene made(SceneDescription d) {
     d.file = "test.obj";
     if (d.groups.empty()) d.groups = {"all"};
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 /// A solution with uniform irradiance, all of it in the elements.
-Solution even_light(Scene scene, float irradiance) {
-    Solution s;
-    s.scene = std::move(scene);
-    s.indirect = sample_function(s.scene, 1, 20);
-    for (auto& value : s.indirect.values) value.fill(irradiance);
-    s.interpolant = s.indirect;
+Solution even_light(Scene scene, double irradiance) {
+    Solution s = even_solution(std::move(scene), irradiance, 20);
     s.direct_in_elements = true;
     return s;
 }

@@ -123,7 +123,7 @@ int tiles_down(const Chart& chart) {
 }  // namespace
 
 std::optional<Spectrum> MeshTexels::Integral::mean(double share) const {
-    // Share of a texel: more than rounding of single-precision coordinates of layers leaves uncovered at borders.
+    // Share of a texel. Derived from the gaps at borders by single-precision coordinates of layers, which are smaller.
     constexpr double min_share = 1e-3;
     if (open + buried < (1 - min_share) * share - min_share * min_share || open < min_share * share)
         return std::nullopt;

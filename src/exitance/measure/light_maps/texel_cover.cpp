@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/clip_convex.hpp"
+
 namespace exitance {
 namespace {
 
@@ -32,13 +34,8 @@ bool holds(const TexelOutline& outline, Vec2 p) {
 
 /// Clips a convex polygon to the half-plane normal . p <= offset.
 void clip(std::vector<Vec2>& polygon, Vec2 normal, double offset, std::vector<Vec2>& out) {
-    out.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
-        const double a = offset - dot(normal, p), b = offset - dot(normal, q);
-        if (a >= 0) out.push_back(p);
-        if ((a > 0 && b < 0) || (a < 0 && b > 0)) out.push_back(p + (a / (a - b)) * (q - p));
-    }
+    clip_convex<Vec2>(
+        polygon, [&](const Vec2& p) { return offset - dot(normal, p); }, out);
     polygon.swap(out);
 }
 

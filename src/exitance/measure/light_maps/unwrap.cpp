@@ -64,7 +64,7 @@ std::optional<std::vector<Chart>> packed(std::span<const FramedChart> charts, do
     return out;
 }
 
-/// The highest density between two that fits, to within 1%.
+/// The highest density at which the charts fit, to within 1%: `fits` is too low or right, `too_dense` too high.
 double densest(std::span<const FramedChart> charts, double fits, double too_dense, MapSize size, int padding) {
     constexpr double enough = 1.01;  // derived from the space that a packing wastes, which is more than 1%
     while (too_dense > enough * fits) {
@@ -111,7 +111,7 @@ Result<Unwrapped> unwrap(const Scene& scene, const UnwrapOptions& options) {
     out.padding = options.padding, out.size = options.size;
     double fits = asked;
     if (out.size.width > 0) {
-        // Halved from a density at which the charts alone fill the map.
+        // Begin with the density at which the charts would fill the whole map, and halve it until they fit.
         fits = std::sqrt(static_cast<double>(out.size.texels()) / area);
         constexpr int max_halvings = 40;
         for (int k = 0; !packed(charts, fits, out.size, out.padding); fits /= 2)
@@ -128,7 +128,7 @@ Result<Unwrapped> unwrap(const Scene& scene, const UnwrapOptions& options) {
         for (int k = 0; !packed(charts, fits, out.size, out.padding); fits /= 2)
             if (++k > max_halvings) return does_not_fit(charts.size(), out.size, "--padding");
     }
-    constexpr double at_most = 4;  // upper limit, since a map with sides twice as long would otherwise have been chosen
+    constexpr double at_most = 4;  // upper limit: a quarter of the map's sides would do at this ratio
     out.density = densest(charts, fits, at_most * fits, out.size, out.padding);
     const std::vector<Chart> boxes = *packed(charts, out.density, out.size, out.padding);
     out.charts = charts.size();

@@ -6,6 +6,7 @@
 #include <span>
 #include <tuple>
 
+#include "exitance/base/clip_convex.hpp"
 #include "exitance/base/disjoint_sets.hpp"
 
 namespace exitance {
@@ -13,8 +14,8 @@ namespace {
 
 using Triangle2 = std::array<Vec2, 3>;
 
-/// Share of the map's side: coordinates that differ by less are equal up to the coordinate_rounding of single
-/// precision.
+/// Share of the map's side. Coordinates that differ by less are equal: they are rounded to single precision in files
+/// of scenes.
 constexpr double coordinate_rounding = 1e-6;
 
 double doubled_area(const Triangle2& t) {
@@ -194,7 +195,7 @@ class OverlapFinder {
     }
 
   private:
-    /// Finds for each triangle of a cell where the triangles of the next object begin.
+    /// For each triangle of a cell, finds the first one of the next object in the list, which is sorted by objects.
     void find_runs(std::span<const std::uint32_t> triangles) {
         next_object_.resize(triangles.size());
         for (std::size_t i = triangles.size(); i-- > 0;) {
@@ -203,7 +204,7 @@ class OverlapFinder {
         }
     }
 
-    /// Compares one triangle with those of its cell, until one overlap is known of it and of its object.
+    /// Compares one triangle with the others of its cell, until it overlaps one of its object and one of another.
     void compare(std::uint32_t a, std::span<const std::uint32_t> triangles) {
         UvObject& own = out_.objects[object(a)];
         for (std::size_t j = 0; j < triangles.size();) {
@@ -238,13 +239,8 @@ double common_area(const Triangle2& a, const Triangle2& b) {
     const double side = doubled_area(b) < 0 ? -1 : 1;
     for (std::size_t k = 0; k < 3 && !polygon.empty(); ++k) {
         const Vec2 from = b[k], edge = b[(k + 1) % 3] - b[k];
-        rest.clear();
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const Vec2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
-            const double d = side * cross(edge, p - from), e = side * cross(edge, q - from);
-            if (d >= 0) rest.push_back(p);
-            if ((d > 0 && e < 0) || (d < 0 && e > 0)) rest.push_back(p + (d / (d - e)) * (q - p));
-        }
+        clip_convex<Vec2>(
+            polygon, [&](const Vec2& p) { return side * cross(edge, p - from); }, rest);
         polygon.swap(rest);
     }
     double area = 0;

@@ -1,9 +1,15 @@
 #include "exitance/measure/pictures/camera.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace exitance {
 namespace {
+
+constexpr double max_fisheye_angle = 360;  // degrees, derived from the sphere of all directions
+/// Degrees. Derived from the scale at the sides of the picture, which is 130 times that in the middle.
+constexpr double max_perspective_angle = 170;
 
 double pixel_width(const Camera& camera, PictureSize size) {
     switch (camera.projection) {
@@ -20,6 +26,23 @@ double pixel_width(const Camera& camera, PictureSize size) {
 }
 
 }  // namespace
+
+std::optional<std::string> find_fault(const Camera& c) {
+    const Vec3 view = c.target - c.eye;
+    if (!is_finite(c.eye) || !std::isfinite(norm(view)) || !std::isfinite(norm(c.up)) || !std::isfinite(c.fov))
+        return "the numbers of a camera must be finite";
+    if (!(norm(view) > 0)) return "the camera's eye and target must be different points";
+    if (!(norm(c.up) > 0)) return "the camera's upward direction must not be zero";
+    const bool is_above_zero = c.fov > 0 || c.projection == Projection::panorama;
+    if (c.projection == Projection::orthographic && !is_above_zero)
+        return fmt::format("the camera's width must be above 0 m, not {}", c.fov);
+    const double most = c.projection == Projection::fisheye       ? max_fisheye_angle
+                        : c.projection == Projection::perspective ? max_perspective_angle
+                                                                  : HUGE_VAL;
+    if (!is_above_zero || c.fov > most)
+        return fmt::format("the camera's angle must be above 0 and at most {} degrees, not {}", most, c.fov);
+    return std::nullopt;
+}
 
 CameraRays::CameraRays(const Camera& camera, PictureSize size)
     : projection_(camera.projection), size_(size), eye_(camera.eye), pixel_(pixel_width(camera, size)) {

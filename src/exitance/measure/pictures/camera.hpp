@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -29,6 +32,9 @@ struct Camera {
     Vec3 up = {0, 0, 1};  ///< Upward direction. Y is used instead if it is parallel to the line of sight.
     Projection projection = Projection::perspective;
 };
+
+/// Returns what is wrong with a camera, as a sentence; none if pictures can be made with it.
+std::optional<std::string> find_fault(const Camera& camera);
 
 /// Generates the rays of a camera.
 class CameraRays {

@@ -244,7 +244,7 @@ Picture paint(const RadiosityFunction& light, const PictureOptions& options, con
     const auto columns = static_cast<std::size_t>(tile_columns(picture.size));
     const std::size_t tiles = tile_count(picture.size);
     finished.assign(tiles, 0);
-    // A painter's memory is reused for several tiles; if a tile takes long, tiles are distributed one by one.
+    // A painter, whose memory is reused, paints several tiles; slow tiles, with a gather, are distributed one by one.
     // Processes need smaller parts than threads, which take the next part when they have finished one.
     const std::size_t grain = options.gather > 0 ? 1
                               : processes() > 1  ? 2
@@ -302,7 +302,7 @@ std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSiz
     const auto seconds_on = [&](const Pass& pass, std::size_t at_once) {
         return static_cast<double>(pass.size(whole).pixels()) * pass.samples / static_cast<double>(at_once);
     };
-    // A pass of few tiles uses few threads.
+    // A pass does not use more threads than it has tiles.
     const auto busy = [&](const Pass& pass) { return std::min(tile_count(pass.size(whole)), all_threads); };
     // Without a deadline only a signal may end the picture; a pass with squares of 8 x 8 pixels is made for that case.
     if (std::isinf(left) && passes[last].block > 8)

@@ -15,11 +15,7 @@ namespace {
 
 /// Solution of a furnace, E = M / (1 - rho), all of it in the elements.
 Solution furnace(double rho) {
-    Solution s;
-    s.scene = box_scene(1, 2, 1, rho, 1, 1);
-    s.indirect = sample_function(s.scene, 1, 20);
-    for (auto& value : s.indirect.values) value.fill(static_cast<float>(1 / (1 - rho)));
-    s.interpolant = s.indirect;
+    Solution s = even_solution(box_scene(1, 2, 1, rho, 1, 1), 1 / (1 - rho), 20);
     s.direct_in_elements = true;
     return s;
 }
@@ -35,6 +31,27 @@ Vec3 direction(const CameraRays& rays, double x, double y) {
     Vec3 along;
     EXPECT_TRUE(rays.ray(x, y, origin, along));
     return normalized(along);
+}
+
+TEST(Camera, AFaultIsFoundIfPicturesCannotBeMade) {
+    const Camera good{{0, 0, 0}, {0, 0, -1}, 60, {0, 0, 1}, Projection::perspective};
+    EXPECT_FALSE(find_fault(good)) << "the line of sight may be vertical";
+    const auto with = [&](auto change) {
+        Camera camera = good;
+        change(camera);
+        return find_fault(camera).value_or("");
+    };
+    EXPECT_NE(with([](Camera& c) { c.target = c.eye; }).find("different points"), std::string::npos);
+    EXPECT_NE(with([](Camera& c) { c.target.x = NAN; }).find("finite"), std::string::npos);
+    EXPECT_NE(with([](Camera& c) { c.eye.x = -1e308, c.target.x = 1e308; }).find("finite"), std::string::npos);
+    EXPECT_NE(with([](Camera& c) { c.fov = NAN; }).find("finite"), std::string::npos);
+    EXPECT_NE(with([](Camera& c) { c.up = {}; }).find("upward"), std::string::npos);
+    for (const double fov : {0.0, -1.0, 180.0})
+        EXPECT_NE(with([&](Camera& c) { c.fov = fov; }).find("at most 170 degrees"), std::string::npos) << fov;
+    EXPECT_NE(with([](Camera& c) { c.fov = 0, c.projection = Projection::orthographic; }).find("width"),
+              std::string::npos);
+    EXPECT_EQ(with([](Camera& c) { c.fov = 360, c.projection = Projection::fisheye; }), "");
+    EXPECT_EQ(with([](Camera& c) { c.fov = 0, c.projection = Projection::panorama; }), "");
 }
 
 TEST(CameraRays, TheCentreIsTheTargetAndTheEdgesAreHalfTheAngleAway) {
@@ -308,8 +325,7 @@ void add_box(SceneDescription& d, const Point& lo, const Point& hi, std::uint32_
     const auto first = static_cast<std::uint32_t>(d.points.size());
     for (const double z : {lo.z, hi.z})
         d.points.insert(d.points.end(), {{lo.x, lo.y, z}, {hi.x, lo.y, z}, {hi.x, hi.y, z}, {lo.x, hi.y, z}});
-    for (std::vector<std::uint32_t> face : std::vector<std::vector<std::uint32_t>>{
-             {0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}) {
+    for (std::vector<std::uint32_t> face : box_faces) {
         for (std::uint32_t& corner : face) corner += first;
         if (!inwards) std::reverse(face.begin(), face.end());
         d.faces.push_back({face, material, 0, 1});

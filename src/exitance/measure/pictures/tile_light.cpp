@@ -175,8 +175,8 @@ Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const P
     return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_) - meshed;
 }
 
-/// Direct light at one point of a spot. Returns true if it certainly equals the mean over the spot, which then needs no
-/// mesh.
+/// Computes direct light at one point of a spot. Returns true if that is the mean over the spot, so that neither other
+/// points nor the mesh are needed.
 bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& light) {
     if (squared(direct_share_) == 0 || (known && known->is_dark())) {
         spot.meshed.reset();
@@ -191,8 +191,8 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
 }
 
 bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
-    // In pictures for viewing, fainter edges show no visible steps.
-    constexpr double unseen_edge = 0.05;  // derived from steps of 1% between the pixels within a shadow edge
+    // Edges of shadows below this difference of neighbours are not visible in pictures for viewing.
+    constexpr double unseen_edge = 0.05;  // derived from a shadow edge of five pixels, with steps of 1% between them
     const double difference = interpolation_ > 0 ? unseen_edge : alike;
     int neighbours = 0;
     const auto [x, y] = std::pair(spots[i].x, spots[i].y);

@@ -21,8 +21,8 @@ struct Spot {
     std::uint32_t first = 0, count = 0;  ///< Range of the spot's points; the first four of them are well distributed.
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
     Spectrum elements = {};              ///< The part of `irradiance` that is not exact direct light, W/m^2.
-    /// If the solution's mesh is integrated over the spot: the mean of its MeshLight. Points then only give the
-    /// difference from the mesh, which has no edges.
+    /// Mean over the spot of the light of the solution's discontinuity mesh (MeshLight), if it was integrated. Points
+    /// then give only the difference from that light, which has no shadow edges.
     std::optional<Spectrum> meshed = {};
 };
 
@@ -81,7 +81,7 @@ class TileLight {
         }
     }
 
-    /// The prepared light of a block in two parts.
+    /// The prepared direct light of a block, split by whether emitters may be blocked.
     struct SplitLight {
         bool is_split = false;
         ReceiverLight open;      ///< Emitters that are fully visible from the whole block: smooth.

@@ -47,12 +47,8 @@ std::vector<Normal> some_directions(int count) {
 }
 
 /// A solution with uniform irradiance in its elements; emitters also emit.
-Solution even_light(Scene scene, float irradiance) {
-    Solution s;
-    s.scene = std::move(scene);
-    s.indirect = sample_function(s.scene, 1, 20);
-    for (auto& value : s.indirect.values) value.fill(irradiance);
-    s.interpolant = s.indirect;
+Solution even_light(Scene scene, double irradiance) {
+    Solution s = even_solution(std::move(scene), irradiance, 20);
     s.bounces = -1;
     return s;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "exitance/base/words.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/options/value_kinds.hpp"
 
@@ -158,11 +159,8 @@ OptionValue shadow_lines() {
             lines = {.kind = word == "all" ? Kind::all : Kind::automatic};
         } else {
             lines.kind = Kind::on_surfaces;
-            for (std::size_t at = 0; at <= word.size();) {
-                const std::size_t end = std::min(word.find(',', at), word.size());
-                if (end > at) lines.names.push_back(word.substr(at, end - at));
-                at = end + 1;
-            }
+            for (const std::string& name : split_at_commas(word))
+                if (!name.empty()) lines.names.push_back(name);
             if (lines.names.empty()) return "names no surfaces";
         }
         return "";

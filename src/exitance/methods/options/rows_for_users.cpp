@@ -149,7 +149,7 @@ std::vector<OptionRow> rows_of_scene_and_limits() {
          .section = "-"},
         {.name = "--epw",
          .value = text("FILE", at(&R::epw)),
-         .does = "Weather file with the place and the irradiances for --sky",
+         .does = "Weather file (.epw or .wea) with the place and the irradiances for --sky",
          .group = group::scene,
          .needs = {{"--sky"}},
          .section = "-"},

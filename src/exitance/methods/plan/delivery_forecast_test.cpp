@@ -5,6 +5,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "support/built_scene.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -27,9 +28,7 @@ Scene round_room(int corners) {
         d.faces.push_back({{here, here + 1, next + 1, next}, 0u, 0, k + 1});
     }
     d.faces.push_back({floor, 0u, 0, corners + 1}), d.faces.push_back({ceiling, 1u, 0, corners + 2});
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 Plan plan_at(const Scene& scene, double error) {

@@ -18,7 +18,7 @@ void mean_row(const ElementLight& light, std::size_t leaf, std::span<float> out)
             out[p] += replicate[leaf * light.columns + p] / static_cast<float>(daylight_replicates);
 }
 
-/// Direct sunlight that an element reflects, lm/m^2; 0 if all of the sun would not reach `least` lm/m^2.
+/// Direct sunlight that an element reflects, lm/m^2; 0 if even the whole sun would give less than `least` lm/m^2.
 double reflected_sun(const YearSky::Sun& sun, const SurfacePoint& at, double reflectance, double least,
                      const Occluders& occluders) {
     const double most = reflectance * sun.illuminance * dot(sun.towards, at.n);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/scene/add_polygon.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
 #include "exitance/what_if/daylight/view_out.hpp"
 #include "support/built_scene.hpp"
@@ -41,14 +42,7 @@ TEST(DaylightProvision, LevelsAgreeWithTheStandard) {
 Scene porch(bool pane) {
     SceneDescription d;
     d.groups = {"all"}, d.materials = {{"grey", Spectrum(0.5), Spectrum()}};
-    const auto face = [&](std::initializer_list<Point> corners) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(f);
-    };
+    const auto face = [&](const std::vector<Point>& corners) { add_polygon(d, corners); };
     // A room of 4 x 4 x 3 m. Its wall at y = 0 has an opening 2 m wide.
     face({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
     face({{0, 0, 3}, {0, 4, 3}, {4, 4, 3}, {4, 0, 3}});

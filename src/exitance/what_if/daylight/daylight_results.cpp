@@ -14,9 +14,9 @@
 namespace exitance {
 namespace {
 
-/// Sensors whose results are in memory together.
+/// Number of sensors whose results are in memory together.
 constexpr std::size_t block_sensors = 256;
-/// Sensors that each of many processes evaluates at once, unless fewer are left. Derived from the tiles of YearSky
+/// Number of sensors that a process evaluates at once, at least. Derived from the tiles of YearSky, of 16 sensors.
 constexpr std::size_t min_own_sensors = 16;
 
 Error stopped() {

@@ -1,6 +1,5 @@
 #include "exitance/what_if/daylight/daylight_search.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace exitance {

@@ -5,6 +5,7 @@
 
 #include "exitance/what_if/daylight/daylight_results.hpp"
 #include "exitance/what_if/daylight/lm83.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -33,11 +34,7 @@ Scene glazed_room(Fill south = Fill::glass, Fill west = Fill::glass, const Motio
     d.materials = {{"grey", Spectrum(0.5), {}}, {"black", Spectrum(0.0), {}}};
     d.groups = {"all"};
     const auto add = [&](const std::vector<Point>& corners, std::uint32_t material = 0) {
-        d.faces.push_back({{}, material, 0, 0});
-        for (const Point& p : corners) {
-            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(motion(p));
-        }
+        add_polygon(d, corners, motion).material = material;
     };
     const auto in_south = [&](double x0, double x1, double z0, double z1) {
         return std::vector<Point>{{x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}};
@@ -62,9 +59,7 @@ Scene glazed_room(Fill south = Fill::glass, Fill west = Fill::glass, const Motio
     };
     fill(south, in_south(south_low.x, south_high.x, south_low.z, south_high.z));
     fill(west, in_west(west_low.y, west_high.y, west_low.z, west_high.z));
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 /// Sunny hours of two days, in winter and summer.

@@ -6,6 +6,8 @@
 #include "exitance/reference/path_reference.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
+#include "support/checked_scene.hpp"
+#include "support/daylight_room.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
@@ -17,26 +19,12 @@ Scene scene(bool room, const DistantLight& light = {}) {
     d.file = "day.obj";
     d.materials = {{"grey", Spectrum(0.5), {}}};
     d.groups = {"all"};
-    const auto add = [&](const std::vector<Point>& corners) {
-        d.faces.push_back({{}, 0, 0, 0});
-        for (const Point& p : corners) {
-            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-    };
-    add({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}});
-    if (room) {
-        add({{0, 0, 2.5}, {0, 4, 2.5}, {3, 4, 2.5}, {3, 0, 2.5}});
-        add({{0, 4, 0}, {3, 4, 0}, {3, 4, 2.5}, {0, 4, 2.5}});
-        add({{0, 0, 0}, {0, 4, 0}, {0, 4, 2.5}, {0, 0, 2.5}});
-        add({{3, 0, 0}, {3, 0, 2.5}, {3, 4, 2.5}, {3, 4, 0}});
-        add({{0, 0, 0}, {0, 0, 1}, {3, 0, 1}, {3, 0, 0}});
-        add({{0, 0, 2}, {0, 0, 2.5}, {3, 0, 2.5}, {3, 0, 2}});
-    }
+    if (room)
+        add_daylight_room(d);
+    else
+        add_polygon(d, {{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}});
     d.distant = light;
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 std::vector<DaylightHour> day() {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <utility>
 
 #include "exitance/base/parallel.hpp"
@@ -316,33 +315,36 @@ ElementLight DaylightTransport::solve(const SkyColumns& columns) const {
     return out;
 }
 
-ElementLight DaylightTransport::solve_through(const SkyColumns& columns, const ElementLight& total,
-                                              std::size_t group) const {
+/// Iterates over the reflected light of all replicates in this process. gather(replicate, row, light, out) computes the
+/// irradiance of a leaf, whose rays are in `row`.
+template <class Gather>
+ElementLight DaylightTransport::iterate_all(const SkyColumns& columns, const Gather& gather) const {
     ElementLight out;
     out.columns = columns.count();
     for (std::size_t k = 0; k < daylight_replicates; ++k)
         out.reflected[k] = iterate(out.columns, [&](std::size_t i, const ElementLight& light, std::span<float> to) {
-            const RayCounts& row = rows_[k][i];
-            const RayCounts::Through& through = row.through[group];
-            light.gather(0, row, to), light.add(0, through.leaves, row.rays, -1, to);
-            total.add(k, through.leaves, row.rays, 1, to), columns.add_light(through, row.rays, to);
+            gather(k, rows_[k][i], light, to);
         });
     return out;
 }
 
+ElementLight DaylightTransport::solve_through(const SkyColumns& columns, const ElementLight& total,
+                                              std::size_t group) const {
+    return iterate_all(columns, [&](std::size_t k, const RayCounts& row, const ElementLight& light, auto to) {
+        const RayCounts::Through& through = row.through[group];
+        light.gather(0, row, to), light.add(0, through.leaves, row.rays, -1, to);
+        total.add(k, through.leaves, row.rays, 1, to), columns.add_light(through, row.rays, to);
+    });
+}
+
 ElementLight DaylightTransport::solve_twice(const SkyColumns& columns, const ElementLight& total,
                                             const ElementLight& any) const {
-    ElementLight out;
-    out.columns = columns.count();
-    for (std::size_t k = 0; k < daylight_replicates; ++k)
-        out.reflected[k] = iterate(out.columns, [&](std::size_t i, const ElementLight& light, std::span<float> to) {
-            const RayCounts& row = rows_[k][i];
-            const RayCounts::Through &one = row.through[any_group()], &two = row.through[two_groups()];
-            light.gather(0, row, to), light.add(0, one.leaves, row.rays, -1, to);
-            any.add(k, one.leaves, row.rays, 1, to), any.add(k, two.leaves, row.rays, -1, to);
-            total.add(k, two.leaves, row.rays, 1, to), columns.add_light(two, row.rays, to);
-        });
-    return out;
+    return iterate_all(columns, [&](std::size_t k, const RayCounts& row, const ElementLight& light, auto to) {
+        const RayCounts::Through &one = row.through[any_group()], &two = row.through[two_groups()];
+        light.gather(0, row, to), light.add(0, one.leaves, row.rays, -1, to);
+        any.add(k, one.leaves, row.rays, 1, to), any.add(k, two.leaves, row.rays, -1, to);
+        total.add(k, two.leaves, row.rays, 1, to), columns.add_light(two, row.rays, to);
+    });
 }
 
 void DaylightTransport::cast_sensor(const SurfacePoint& sensor, std::size_t number, unsigned rays,

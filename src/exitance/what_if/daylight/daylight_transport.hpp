@@ -59,7 +59,8 @@ class SkyColumns {
     std::size_t count() const { return unit_patches_ > 0 ? unit_patches_ : columns_.size(); }
     /// Adds the irradiance by the rays that end in the sky to `out`, one value per column.
     void add_light(const RayCounts& ends, std::span<float> out) const;
-    /// Adds the irradiance by rays through panes, of `rays` rays in all; for columns without finer patches.
+    /// Adds the irradiance by the rays that crossed panes; `rays`: number of all rays. For columns without finer
+    /// patches.
     void add_light(const RayCounts::Through& ends, std::uint32_t rays, std::span<float> out) const;
 
   private:
@@ -81,7 +82,7 @@ struct ElementLight {
 
     /// Computes the reflected light at a sensor from its rays, one value per column.
     void gather(std::size_t replicate, const RayCounts& ends, std::span<float> out) const;
-    /// Adds the light of a part of the rays, of `rays` rays in all, times `sign`.
+    /// Adds the light at the `ends` of some rays, divided by the number of all `rays`, times `sign`.
     void add(std::size_t replicate, std::span<const RayCounts::End> ends, std::uint32_t rays, float sign,
              std::span<float> out) const;
 };
@@ -143,6 +144,8 @@ class DaylightTransport {
     PaneGroups::Mask crossed(const RayHit& hit, const Point& origin, const Vec3& direction) const;
     template <class Gather>
     std::vector<float> iterate(std::size_t columns, const Gather& gather) const;
+    template <class Gather>
+    ElementLight iterate_all(const SkyColumns& columns, const Gather& gather) const;
 
     Scene scene_;
     Stage stage_;

@@ -8,6 +8,7 @@
 
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -28,9 +29,7 @@ Scene ground(std::vector<Spectrum> transmissivities) {
         pane.corners = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, pane.transmissivity = transmissivities[i];
         d.panes.push_back(std::move(pane));
     }
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    return checked_scene(std::move(d));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "exitance/what_if/daylight/glare_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "exitance/measure/glare/daylight_glare_rules.hpp"

@@ -1,7 +1,6 @@
 #include "exitance/what_if/daylight/glare_year.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "exitance/base/parallel.hpp"
 

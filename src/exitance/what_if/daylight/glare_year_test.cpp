@@ -6,6 +6,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
+#include "support/checked_scene.hpp"
+#include "support/daylight_room.hpp"
 
 namespace exitance {
 namespace {
@@ -17,23 +19,8 @@ Scene black_room() {
     SceneDescription d;
     d.materials = {{"black", Spectrum(), {}}};
     d.groups = {"all"};
-    const auto add = [&](const std::vector<Point>& corners) {
-        d.faces.push_back({{}, 0, 0, 0});
-        for (const Point& p : corners) {
-            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-    };
-    add({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}});
-    add({{0, 0, 2.5}, {0, 4, 2.5}, {3, 4, 2.5}, {3, 0, 2.5}});
-    add({{0, 4, 0}, {3, 4, 0}, {3, 4, 2.5}, {0, 4, 2.5}});
-    add({{0, 0, 0}, {0, 4, 0}, {0, 4, 2.5}, {0, 0, 2.5}});
-    add({{3, 0, 0}, {3, 0, 2.5}, {3, 4, 2.5}, {3, 4, 0}});
-    add({{0, 0, 0}, {0, 0, 1}, {3, 0, 1}, {3, 0, 0}});
-    add({{0, 0, 2}, {0, 0, 2.5}, {3, 0, 2.5}, {3, 0, 2}});
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    add_daylight_room(d);
+    return checked_scene(std::move(d));
 }
 
 /// Hours from 9 to 16 h of a day in December; the opening faces south.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exitance/base/check.hpp"
+#include "support/checked_scene.hpp"
 
 namespace exitance {
 namespace {
@@ -12,22 +12,14 @@ namespace {
 Stage room(bool roof) {
     SceneDescription d;
     d.file = "room.obj", d.groups = {"all"}, d.materials = {{"grey", Spectrum(0.5), {}}};
-    const auto add = [&](const std::vector<Point>& corners) {
-        d.faces.push_back({{}, 0, 0, 0});
-        for (const Point& p : corners) {
-            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-    };
+    const auto add = [&](const std::vector<Point>& corners) { add_polygon(d, corners); };
     add({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}});
     if (roof) add({{0, 0, 2.5}, {0, 3, 2.5}, {4, 3, 2.5}, {4, 0, 2.5}});
     add({{0, 3, 0}, {4, 3, 0}, {4, 3, 2.5}, {0, 3, 2.5}}), add({{4, 0, 0}, {4, 0, 2.5}, {4, 3, 2.5}, {4, 3, 0}});
     add({{0, 0, 0}, {0, 3, 0}, {0, 3, 2.5}, {0, 0, 2.5}}), add({{0, 0, 0}, {0, 0, 1}, {4, 0, 1}, {4, 0, 0}});
     add({{-20, -20, -0.3}, {20, -20, -0.3}, {20, 20, -0.3}, {-20, 20, -0.3}});
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
     static std::vector<std::unique_ptr<Scene>> scenes;  // a stage refers to its scene
-    scenes.push_back(std::make_unique<Scene>(std::move(*checked.scene)));
+    scenes.push_back(std::make_unique<Scene>(checked_scene(std::move(d))));
     return Stage(*scenes.back());
 }
 

@@ -9,7 +9,7 @@ struct Interval {
     double low = 0, high = 0;
 };
 
-/// A result: `value` from the mean of the replicates, and `less` and `more` if all light changes by -bias and +bias.
+/// A result: `value` follows from the mean of the replicates, `less` and `more` from that mean less and plus the bias.
 struct SpreadResult {
     double value = 0, less = 0, more = 0;
     Replicates replicates{};
@@ -25,7 +25,7 @@ void for_each_value(SpreadResult& sum, const SpreadResult& value, const F& f) {
     for (std::size_t k = 0; k < daylight_replicates; ++k) f(sum.replicates[k], value.replicates[k]);
 }
 
-/// Returns the interval of a share of sensors from the number of sensors that reach it.
+/// Returns the interval of the share of `sensors` that reach a value, from the number of those that do.
 Interval share_interval(const SpreadResult& counts, double sensors);
 
 }  // namespace exitance

@@ -11,13 +11,13 @@ namespace {
 /// Blinds close if more than this share of the points has at least this direct sunlight, lx [LM83].
 constexpr double max_sunny_share = 0.02, min_sunlight = 1000;
 
-/// Finds the sunlight through groups of panes that more than 2% of the sensors of a grid have.
+/// Finds how much direct sunlight reaches more than 2% of the sensors of a grid through each group of panes.
 class CommonSunlight {
   public:
     CommonSunlight(const DaylightSetting& setting, const PaneGroups& groups)
         : setting_(setting), groups_(groups), suns_(setting.sky), hours_(setting.sky.hours()) {}
 
-    /// Returns the sunlight of the grid with the most of it, lx, per group and hour; 0 below 1000 lx.
+    /// Returns that sunlight, lx, for the grid that has most of it, per group and hour; 0 below 1000 lx.
     std::vector<std::vector<float>> find(const Occluders& occluders, std::span<const SurfacePoint> places) const {
         std::vector<std::vector<float>> out(groups_.count(), std::vector<float>(hours_, 0));
         std::size_t first = 0;

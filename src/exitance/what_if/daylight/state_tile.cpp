@@ -26,7 +26,7 @@ void StateTile::correct(std::span<float> lux, std::size_t replicate) {
     remove_rounding(lux);
 }
 
-/// Finds the light of each part that no surface reflects.
+/// Finds the light of each part that reaches the sensors without a reflection, from the sun and from the sky.
 void StateTile::find_straight(const YearSuns& suns, std::span<const float> sun) {
     const std::size_t hours = setting_.sky.hours(), m = parts_.front().matrix.patches;
     for (std::size_t k = 0; k < parts_.size(); ++k) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/base/clip_convex.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
@@ -22,13 +23,8 @@ void VisiblePatches::clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::
         if (std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& r) { return dot(n, r) <= 0; }))
             return polygon.clear();
     for (const Vec3& n : cone.inward) {
-        rest.clear();
-        for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
-            const Vec3 &p = polygon[i], &q = polygon[i + 1 == m ? 0 : i + 1];
-            const double a = dot(n, p), b = dot(n, q);
-            if (a >= 0) rest.push_back(p);
-            if ((a > 0 && b < 0) || (a < 0 && b > 0)) rest.push_back(p + (a / (a - b)) * (q - p));
-        }
+        clip_convex<Vec3>(
+            polygon, [&](const Vec3& r) { return dot(n, r); }, rest);
         polygon.swap(rest);
         if (polygon.size() < 3) return polygon.clear();
     }

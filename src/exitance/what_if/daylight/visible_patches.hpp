@@ -14,7 +14,7 @@ namespace exitance {
 /// clipped to the patches.
 class VisiblePatches {
   public:
-    /// `occluders`: of a scene with a sky and a ground, each of one piece or more. Must outlive this.
+    /// `occluders`: those of a scene whose light from outside is a sky and a ground. Must outlive this object.
     VisiblePatches(const Occluders& occluders, const SkyPatches& patches);
 
     /// Arrays for irradiance(): one object per thread, reused.

@@ -1,7 +1,6 @@
 #include "exitance/what_if/light_groups/cast_transport.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"

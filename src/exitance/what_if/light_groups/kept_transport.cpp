@@ -13,7 +13,7 @@ namespace {
 /// Distance from a corner at which a leaf is evaluated, since light may jump at its border; in units of the leaf.
 constexpr double inwards = 1e-3;  // derived from the tolerance of points, which is less than a thousandth of an element
 
-/// Row of every element of `indirect` that is a receiver or below one.
+/// For every element of `indirect` that is a receiver or a part of one: the receiver's row in the transport.
 Field<ElementId, std::uint32_t> rows_of(const ElementTree& tree, std::span<const std::uint32_t> receivers) {
     Field<ElementId, std::uint32_t> row(tree.size(), TransportLayout::none);
     for (std::uint32_t i = 0; i < receivers.size(); ++i) row[ElementId(receivers[i])] = i;
@@ -30,7 +30,7 @@ Between on_receiver(const ElementTree& tree, std::span<const std::uint32_t> rece
     return {4 * row, corner_weights(patch, patch.coordinates(x))};
 }
 
-/// Finds the sources, and how the interpolant's leaves and the elements above sources are computed from them.
+/// Lists the sources, the share of every leaf in the mean of its source, and that of every child in its parent's mean.
 void find_sources(const Solution& solution, TransportLayout& out) {
     const ElementTree& tree = solution.interpolant.tree;
     out.number.resize(tree.size(), TransportLayout::none);

@@ -94,7 +94,8 @@ std::vector<std::uint32_t> number_nodes(const ElementFunction& f, double scene_s
 /// Replaces every value by the mean of those at its node.
 void average_at_nodes(std::span<const std::uint32_t> node, std::size_t count, std::vector<Spectrum>& values);
 
-/// The stored transport as an operator between sources, for relaxation: rows, then interpolation at the sources.
+/// The stored transport as an operator from sources to sources, for relaxation: its rows give E at the receivers'
+/// corners, from which E at the sources is interpolated.
 /// O(entries) per gather.
 class KeptOperator final : public TransportOperator {
   public:
@@ -109,7 +110,8 @@ class KeptOperator final : public TransportOperator {
 
     /// E at the corners of the receivers, four per receiver, W/m^2.
     std::vector<Spectrum> at_receivers(std::span<const Spectrum> radiosity) const;
-    /// E at the values of `indirect`, W/m^2, interpolated from the receivers' corners and averaged at nodes.
+    /// E for each of the values of `indirect`, W/m^2: interpolated between E at the `receivers`' corners, then averaged
+    /// over the values of each node.
     std::vector<Spectrum> at_corners(const std::vector<Spectrum>& receivers) const;
 
   private:

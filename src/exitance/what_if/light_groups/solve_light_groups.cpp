@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"

@@ -106,8 +106,6 @@ class TriangleVisitor {
 
   private:
     void add(std::size_t node, const GltfModel::Primitive& p, const Affine& to_world) {
-        const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
-        const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
         const bool is_mirrored = to_world.determinant() < 0;
         // Cofactors of the matrix: normals stay perpendicular to surfaces that are scaled unevenly.
         const double side = is_mirrored ? -1 : 1;
@@ -115,7 +113,7 @@ class TriangleVisitor {
                           side * cross(to_world.z, to_world.x),
                           side * cross(to_world.x, to_world.y),
                           {}};
-        for (std::size_t t = 0; t < triangles; ++t) {
+        for (std::size_t t = 0, count = p.triangle_count(); t < count; ++t) {
             GltfTriangle triangle{node, &p, vertices_of(p, t), {}, {}};
             std::array<std::size_t, 3>& v = triangle.vertices;
             if (std::max({v[0], v[1], v[2]}) >= p.positions.size()) continue;

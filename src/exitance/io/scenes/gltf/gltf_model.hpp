@@ -64,6 +64,11 @@ struct GltfModel {
         std::array<GltfRows, 4> places;  ///< TEXCOORD_0 to 3 if textures were requested; empty if missing.
         GltfRows normals;                ///< NORMAL; empty if missing or not requested.
         GltfRows colours;  ///< COLOR_0, which multiplies the base colour; empty if missing or not requested.
+
+        std::size_t triangle_count() const {
+            const std::size_t corners = has_indices ? indices.size() : positions.size();
+            return mode == Mode::triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
+        }
     };
     struct Mesh {
         std::string name;

@@ -237,8 +237,7 @@ void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided,
 }
 
 bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::Mesh& mesh, const Affine& to_world) {
-    const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
-    const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
+    const std::size_t triangles = p.triangle_count();
     if (triangles > max_triangles - std::min(triangles_, max_triangles))
         return error(fmt::format("there are more than {} triangles", max_triangles),
                      "every instance counts: leave some out");

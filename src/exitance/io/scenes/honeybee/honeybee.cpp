@@ -9,6 +9,7 @@
 #include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/honeybee/punched_outline.hpp"
 #include "exitance/io/scenes/radiance/rad_materials.hpp"
+#include "exitance/scene/add_polygon.hpp"
 
 namespace exitance {
 namespace {
@@ -73,20 +74,15 @@ class HoneybeeScene {
         out_.pane_labels.push_back({sheet.modifier, sheet.name});
     }
 
-    void add_face(std::vector<Point> corners, std::uint32_t material) {
-        SceneDescription::Face face;
+    void add_face(const std::vector<Point>& corners, std::uint32_t material) {
+        SceneDescription::Face& face = add_polygon(out_.description, corners);
         face.material = material, face.group = group_;
-        for (const Point& corner : corners) {
-            face.corners.push_back(static_cast<std::uint32_t>(out_.description.points.size()));
-            out_.description.points.push_back(corner);
-        }
-        out_.description.faces.push_back(std::move(face));
     }
 
     void add_sides(std::vector<Point> corners, std::uint32_t material, HoneybeeSides sides) {
         if (sides == HoneybeeSides::both) add_face(corners, material);
         std::reverse(corners.begin(), corners.end());
-        add_face(std::move(corners), material);
+        add_face(corners, material);
     }
 
     const std::string& path_;

@@ -298,24 +298,25 @@ void ObjReader::resolve_materials() {
     take_panes();
 }
 
-/// Texture coordinates of a face's corners; empty if it has none.
-std::vector<Vec2> ObjReader::places_of(std::size_t face) const {
-    std::vector<Vec2> out;
-    for (const std::uint32_t place : places_of_face_[face]) {
-        if (place >= places_.size() || std::isnan(places_[place].x)) return {};
-        out.push_back(places_[place]);
+/// Returns the values of a face's corners, which are given by their indices; empty if one of them is not known.
+template <class Value>
+std::vector<Value> values_at_corners(const std::vector<Value>& values, const std::vector<std::uint32_t>& indices) {
+    std::vector<Value> out;
+    for (const std::uint32_t i : indices) {
+        if (i >= values.size() || std::isnan(values[i].x)) return {};
+        out.push_back(values[i]);
     }
     return out;
 }
 
+/// Texture coordinates of a face's corners; empty if it has none.
+std::vector<Vec2> ObjReader::places_of(std::size_t face) const {
+    return values_at_corners(places_, places_of_face_[face]);
+}
+
 /// Normals of a face's corners; empty if it has none.
 std::vector<Vec3> ObjReader::normals_of(std::size_t face) const {
-    std::vector<Vec3> out;
-    for (const std::uint32_t n : normals_of_face_[face]) {
-        if (n >= normals_.size() || std::isnan(normals_[n].x)) return {};
-        out.push_back(normals_[n]);
-    }
-    return out;
+    return values_at_corners(normals_, normals_of_face_[face]);
 }
 
 /// Gives textured faces the colours of their parts of pictures. Glass has none: its faces become panes.
@@ -368,13 +369,10 @@ void ObjReader::take_panes() {
 
 ReadScene read_obj(const std::string& path, std::optional<std::size_t> texture_parts) {
     const Result<std::string> text = read_whole_file(path);
-    const bool wide = text && (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"));
-    if (text && !wide) return ObjReader(path, *text, texture_parts).read();
-    ReadScene out;
-    out.description.file = path;
-    out.findings.push_back({Finding::Kind::error, path, 0, wide ? "is text in UTF-16" : text.error().message,
-                            wide ? "save it as UTF-8 or plain ASCII" : ""});
-    return out;
+    if (!text) return unreadable_scene(path, text.error().message);
+    if (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"))
+        return unreadable_scene(path, "is text in UTF-16", "save it as UTF-8 or plain ASCII");
+    return ObjReader(path, *text, texture_parts).read();
 }
 
 Result<std::vector<ObjPlaces>> read_obj_places(const std::string& path) {

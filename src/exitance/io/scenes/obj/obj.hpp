@@ -30,6 +30,14 @@ struct ReadScene {
     std::vector<PaneLabel> pane_labels = {};  ///< Labels of the panes of the description.
 };
 
+/// Returns an empty scene whose only finding is that its file cannot be read.
+inline ReadScene unreadable_scene(const std::string& path, std::string message, std::string hint = "") {
+    ReadScene out;
+    out.description.file = path;
+    out.findings.push_back({Finding::Kind::error, path, 0, std::move(message), std::move(hint)});
+    return out;
+}
+
 /// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several
 /// 'mtllib' (relative to the file), relative indices, texture coordinates, comments and continued lines; normal indices
 /// are ignored. Faces before the first 'usemtl' get a grey material named 'default', with a warning. All errors are

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "exitance/io/scenes/radiance/rad_materials.hpp"
 #include "exitance/scene/sky/distant_light.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "exitance/io/scenes/radiance/rad_command.hpp"
 #include "exitance/io/scenes/radiance/rad_perez_command.hpp"
 

@@ -1,5 +1,4 @@
 #include <cstddef>
-#include <cstdio>
 
 #include <jpeglib.h>
 

@@ -41,9 +41,9 @@ struct TextureCuts {
 ///     + (variance of coverage between the parts times area) / area of the scene  min(1, d / length)
 ///     + (flux that is in the wrong part / flux  min(1, d / length))^2
 ///
-/// for parts of the size d. The factor min(1, d / length) is there because other surfaces see a pattern only within
-/// about its size. Where a finer pattern, such as a checkerboard, needs several cuts before any shows an effect, the
-/// benefit per cut of 2^k x 2^k equal parts counts.
+/// for parts of the size d. The factor min(1, d / length) accounts for fine patterns, whose parts differ only for
+/// surfaces that are about as near as their size. A first cut of some patterns, such as a checkerboard, has no benefit;
+/// its benefit is then that of a division into 2^k x 2^k equal parts, per cut.
 /// max_cuts       stops after this many
 /// metres_s, metres_t  length of a unit of the texture coordinates on the patch
 TextureCuts cut_texture(const ColourGrid& grid, const CutScale& scale, std::size_t max_cuts, double metres_s,

@@ -9,13 +9,15 @@
 
 namespace exitance {
 
-/// Computes the mean red, green and blue of a picture (PNG or JPEG), each in [0, 1], after applying `decode` to its 256
-/// values. Grey counts as three equal channels; opacity is ignored. Pictures are decoded row by row in little memory,
-/// except JPEGs with several scans, which are held whole (up to 512 MiB). Error: pictures of more than 2^26 pixels
-/// (8192 x 8192), and files that cannot be decoded.
+/// A value for each of the 256 values of a byte, such as the linear light of an sRGB value.
 struct ByteCurve {
     std::array<double, 256> value;
 };
+
+/// Computes the mean red, green and blue of a picture (PNG or JPEG), each in [0, 1], after applying `decode` to every
+/// value. Grey counts as three equal channels; opacity is ignored. Pictures are decoded row by row in little memory,
+/// except JPEGs with several scans, which are held whole (up to 512 MiB). Error: pictures of more than 2^26 pixels
+/// (8192 x 8192), and files that cannot be decoded.
 Result<std::array<double, 3>> mean_colour(std::span<const std::uint8_t> file, const ByteCurve& decode);
 
 /// Versions of mean_colour() for one format.

@@ -44,7 +44,7 @@ class TexturedFaces {
     static constexpr std::size_t max_varying = std::size_t(1) << 18;
     using Key = std::vector<int>;
     struct Sum {
-        Spectrum reflectance, exitance, squares;  ///< Sum of squared reflectances.
+        Spectrum reflectance, exitance, squares;  ///< Sums over area, m^2; `squares`: of squared reflectances.
         double area = 0;
         std::vector<std::size_t> faces;
     };
