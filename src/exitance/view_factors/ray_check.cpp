@@ -137,7 +137,7 @@ RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const Ray
     RayCheck check;
     const std::vector<DrawnEntry> drawn = draw_entries(table, options);
     if (drawn.empty()) return check;
-    const RowScene ready(scene);
+    const RowScene ready(scene, stop);
     std::vector<RayEntry> found(drawn.size());
     std::atomic<bool> stopped{false};
     shared_ranges(

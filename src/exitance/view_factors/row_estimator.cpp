@@ -207,13 +207,26 @@ double RowEstimator::smallest_candidate(std::size_t face, double variance) {
     return best;
 }
 
+/// True if so many hidden parts would be cut off the faces of a pair that casting rays for it costs less. Cutting one
+/// part off either face leaves about one more pair of pieces for each piece of the other face.
+bool RowEstimator::has_many_pieces(std::size_t face, const Candidate& candidate) const {
+    const HiddenParts& hidden = scene_.hidden_parts;
+    if (!hidden.has(face) && !hidden.has(candidate.column)) return false;
+    const double rays = cast_rays_for(candidate.about, error_ * error_);
+    const auto limit = static_cast<std::size_t>(std::ceil(rays / pair_cost)) + 1;
+    const std::size_t of_face = 1 + hidden.count_from(face, candidate.column, limit),
+                      of_other = 1 + hidden.count_from(candidate.column, face, limit);
+    const auto pairs = static_cast<double>(of_face) * static_cast<double>(of_other);
+    return pairs > 1 && pair_cost * pairs > rays;
+}
+
 /// Visibility between all pieces of two faces.
-View RowEstimator::view_of(std::size_t face, std::size_t other) {
+View RowEstimator::view_of(std::size_t face, std::size_t other, const ConvexParts& own_pieces,
+                           const ConvexParts& other_pieces) {
     const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
     bool any = false, all = true;
-    const auto pieces_a = scene_.hidden_parts.pieces(face, other), pieces_b = scene_.hidden_parts.pieces(other, face);
-    for (const std::vector<Point>& piece_a : pieces_a)
-        for (const std::vector<Point>& piece_b : pieces_b) {
+    for (const std::vector<Point>& piece_a : own_pieces)
+        for (const std::vector<Point>& piece_b : other_pieces) {
             shaft_.set(scene_.occluders, {piece_a, a.plane.n, scene_.region(face), false},
                        {piece_b, b.plane.n, scene_.region(other), false});
             const View view = shaft_.classify(blockers_, 0);
@@ -224,28 +237,30 @@ View RowEstimator::view_of(std::size_t face, std::size_t other) {
 }
 
 /// Exchange area of the parts of two faces that are not hidden, m^2.
-double RowEstimator::unoccluded_exchange(std::size_t face, std::size_t other) const {
-    const HiddenParts& hidden = scene_.hidden_parts;
+double RowEstimator::unoccluded_exchange(std::size_t face, std::size_t other, const ConvexParts& own_pieces,
+                                         const ConvexParts& other_pieces) const {
+    const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
     const double tolerance = contour_share * error_;
-    if (!hidden.matter(face, other) && !hidden.matter(other, face))
-        return exchange_area(scene_.faces[face].outline, scene_.faces[other].outline, tolerance);
+    if (&own_pieces == &a.pieces && &other_pieces == &b.pieces) return exchange_area(a.outline, b.outline, tolerance);
     double sum = 0;
-    const auto own = hidden.pieces(face, other), of_other = hidden.pieces(other, face);
-    for (const std::vector<Point>& a : own)
-        for (const std::vector<Point>& b : of_other) sum += exchange_area(a, b, tolerance);
+    for (const std::vector<Point>& piece_a : own_pieces)
+        for (const std::vector<Point>& piece_b : other_pieces) sum += exchange_area(piece_a, piece_b, tolerance);
     return sum;
 }
 
 void RowEstimator::classify_pair(std::size_t face, Pair& pair, std::uint32_t round) {
     const ViewFace &own = scene_.faces[face], &other = scene_.faces[pair.column];
-    const View view = view_of(face, pair.column);
+    const HiddenParts& hidden = scene_.hidden_parts;
+    const ConvexParts &own_pieces = hidden.pieces(face, pair.column, cut_[0]),
+                      &other_pieces = hidden.pieces(pair.column, face, cut_[1]);
+    const View view = view_of(face, pair.column, own_pieces, other_pieces);
     pair.is_exact = view != View::mixed;
     if (view == View::none) return;
     pair.to_cast =
-        !pair.is_exact && (under_others_ || scene_.hidden_parts.can_be_met(pair.column) ||
+        !pair.is_exact && (under_others_ || hidden.can_be_met(pair.column) ||
                            box_distance(own, other) < near_kernel_sizes * std::max(own.diameter, other.diameter));
     if (pair.to_cast) return;
-    pair.unoccluded = (pair.is_exact ? unoccluded_exchange(face, pair.column)
+    pair.unoccluded = (pair.is_exact ? unoccluded_exchange(face, pair.column, own_pieces, other_pieces)
                                      : exchange_area(own.outline, other.outline, contour_share * error_)) /
                       own.area;
     pair.visible = pair.is_exact ? 1
@@ -259,6 +274,7 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
     pairs_.clear();
     for (const Candidate& candidate : candidates_) {
         if (candidate.about < smallest || stop_.requested()) break;
+        if (has_many_pieces(face, candidate)) continue;
         Pair& pair = pairs_.emplace_back();
         pair.column = candidate.column, pair.left = left_of_pair(face, candidate.column);
         classify_pair(face, pair, round);

@@ -123,7 +123,7 @@ class RowRun {
         const std::vector<std::size_t> left = take_resumed(faces, round);
         if (left.empty()) return true;
         progress_.phase(round == 0 ? "view factors" : "rows again");
-        if (!ready_) ready_.emplace(scene_);
+        if (!ready_) ready_.emplace(scene_, stop_);
         const std::size_t before = faces.size() - left.size();
         const std::size_t rows_at_once = rows_a_step * processes();
         for (std::size_t first = 0; first < left.size(); first += rows_at_once) {

@@ -151,9 +151,9 @@ void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, cons
     standing_between_.push_back(&clipped_.back());
 }
 
-/// True if parts of two faces must be cut off, since a body that touches both faces hides them.
+/// True if parts of two faces must be cut off, since faces that touch both hide them.
 bool RowWorker::has_hidden_parts(std::size_t i, std::size_t j) const {
-    return pairs_.hidden_parts().matter(i, j) || pairs_.hidden_parts().matter(j, i);
+    return pairs_.hidden_parts().count_from(i, j, 1) > 0 || pairs_.hidden_parts().count_from(j, i, 1) > 0;
 }
 
 /// F_ij with blockers, or with hidden parts. Of a blocker that crosses the plane of either face, only the part in front
@@ -182,15 +182,15 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
             if (!front_r_.empty()) add_clipped(make_sheet(front_r_, blocker.faces[k]), receiver, source);
         }
     }
-    const bool is_cut = has_hidden_parts(i, j);
+    const ConvexParts &of_receiver = pairs_.hidden_parts().pieces(i, j, cut_[0]),
+                      &of_source = pairs_.hidden_parts().pieces(j, i, cut_[1]);
+    const bool is_cut = &of_receiver != &receiver.pieces || &of_source != &source.pieces;
     if (standing_between_.empty() && !is_cut) return unoccluded = true, 0;
-    std::vector<std::vector<Point>> cut_r, cut_s;
-    if (is_cut) cut_r = pairs_.hidden_parts().pieces(i, j), cut_s = pairs_.hidden_parts().pieces(j, i);
 
     double total = 0;
     bool all = true;
-    for (const std::vector<Point>& piece_r : is_cut ? cut_r : receiver.pieces)
-        for (const std::vector<Point>& piece_s : is_cut ? cut_s : source.pieces) {
+    for (const std::vector<Point>& piece_r : of_receiver)
+        for (const std::vector<Point>& piece_s : of_source) {
             clip(piece_r, source.plane, front_r_);
             clip(piece_s, receiver.plane, front_s_);
             if (front_r_.empty() || front_s_.empty()) continue;
