@@ -17,20 +17,6 @@ namespace {
 constexpr std::size_t probing_rays = 64;
 constexpr std::size_t faces_a_task = 16;
 
-/// True if a point in front of a face is inside a solid, where most rays meet backs of faces first.
-bool is_inside(const Scene& scene, const RayTracer& tracer, const Point& x, SurfaceId face) {
-    const ScrambledSobol points(face.value);
-    const Frame frame(scene.surfaces()[face].normal);
-    std::array<Vec3, probing_rays> directions;
-    std::array<RayHit, probing_rays> hits;
-    for (std::uint32_t k = 0; k < probing_rays; ++k)
-        directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
-    tracer.nearest(directions, x, scene.surfaces()[face].region, hits);
-    const auto backs =
-        std::count_if(hits.begin(), hits.end(), [](const RayHit& h) { return !h.surface.is_none() && !h.front; });
-    return 2 * static_cast<std::size_t>(backs) > probing_rays;
-}
-
 /// True if points are on both sides of a plane, farther than `slack` from it (metres).
 bool is_cut(std::span<const Point> points, const Plane& plane, double slack) {
     bool above = false, below = false;
@@ -159,20 +145,63 @@ void HiddenParts::add_covers(const Occluders& occluders, const Bvh& tree, const 
             }
         }
     });
-    const auto is_uncovered = [](const HiddenPart& part) { return !part.is_covered; };
-    std::vector<std::uint32_t> uncertain;  // faces with parts that may also be the two sides of a sheet
+    if (!stop.requested()) drop_sheets(occluders, stop, tracer);
+}
+
+/// Tests whether a point in front of a face is inside a solid. Rays from there meet backs of faces, and fronts that
+/// other faces cover. Faces with equal outlines do not tell: both the sides of a sheet and two boxes side by side have
+/// them.
+bool HiddenParts::is_inside(const Occluders& occluders, const RayTracer& tracer, const UncertainPart& part,
+                            std::span<const UncertainPart> uncertain) const {
+    const Scene& scene = occluders.scene();
+    const SurfaceId face(part.face);
+    const Point x = centroid(found_[part.face][part.part].outline);
+    const ScrambledSobol points(face.value);
+    const Frame frame(scene.surfaces()[face].normal);
+    std::array<Vec3, probing_rays> directions;
+    std::array<RayHit, probing_rays> hits;
+    for (std::uint32_t k = 0; k < probing_rays; ++k)
+        directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+    tracer.nearest(directions, x, scene.surfaces()[face].region, hits);
+    std::size_t fronts = 0, backs = 0;
+    for (std::size_t k = 0; k < probing_rays; ++k) {
+        const RayHit& hit = hits[k];
+        if (hit.surface.is_none()) {
+            ++fronts;
+            continue;
+        }
+        const Surface& surface = scene.surfaces()[hit.surface];
+        const Point place = place_of(scene, hit, x, directions[k]);
+        bool may_be_sheet = false;
+        for (auto other = std::lower_bound(uncertain.begin(), uncertain.end(), hit.surface.value,
+                                           [](const UncertainPart&u, std::uint32_t i) { return u.face < i; });
+             other != uncertain.end() && other->face == hit.surface.value; ++other)
+            may_be_sheet |= contains(found_[other->face][other->part].outline, surface.normal, place);
+        if (may_be_sheet) continue;
+        ++(!hit.front || occluders.is_covered(place, surface.normal, surface.region) ? backs : fronts);
+    }
+    return backs > fronts;
+}
+
+/// Removes covers between the two sides of a sheet, which hide nothing.
+void HiddenParts::drop_sheets(const Occluders& occluders, const StopRequest& stop, const RayTracer* tracer) {
+    std::vector<UncertainPart> uncertain;  // sorted by face
     for (std::uint32_t i = 0; i < faces_.size(); ++i)
-        if (std::any_of(found_[i].begin(), found_[i].end(), is_uncovered)) uncertain.push_back(i);
-    if (uncertain.empty() || stop.requested()) return;
+        for (std::size_t k = 0; k < found_[i].size(); ++k)
+            if (!found_[i][k].is_covered) uncertain.push_back({i, k});
+    if (uncertain.empty()) return;
     std::optional<RayTracer> own_tracer;
     if (!tracer) tracer = &own_tracer.emplace(occluders.scene());
+    std::vector<std::uint8_t> is_hidden(uncertain.size());
     parallel_for(uncertain.size(), faces_a_task, [&](std::size_t k) {
         if (stop.requested()) return;
-        std::erase_if(found_[uncertain[k]], [&](const HiddenPart& part) {
-            return !part.is_covered &&
-                   !is_inside(occluders.scene(), *tracer, centroid(part.outline), SurfaceId(uncertain[k]));
-        });
+        is_hidden[k] = is_inside(occluders, *tracer, uncertain[k], uncertain);
     });
+    for (std::size_t k = uncertain.size(); k-- > 0;)
+        if (!is_hidden[k]) {
+            auto& parts = found_[uncertain[k].face];
+            parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(uncertain[k].part));
+        }
 }
 
 void HiddenParts::add_sections(const Occluders& occluders, const Bvh& tree, const FaceGroups& groups) {

@@ -72,6 +72,12 @@ class HiddenParts {
         bool is_met = false, has_uncovered = false;
     };
 
+    /// A covered part that may be the side of a sheet.
+    struct UncertainPart {
+        std::uint32_t face;
+        std::size_t part;  ///< Index in the face's list.
+    };
+
     const Face* find(std::size_t face) const {
         return numbers_.empty() || numbers_[face] == none ? nullptr : &faces_with_parts_[numbers_[face]];
     }
@@ -80,6 +86,9 @@ class HiddenParts {
     void visit_limited(const Face& face, const ViewFace& other, const Visit& visit) const;
     bool shows_unlimited(const Face& face, const ViewFace& other) const;
     void add_covers(const Occluders& occluders, const Bvh& tree, const StopRequest& stop, const RayTracer* tracer);
+    bool is_inside(const Occluders& occluders, const RayTracer& tracer, const UncertainPart& part,
+                   std::span<const UncertainPart> uncertain) const;
+    void drop_sheets(const Occluders& occluders, const StopRequest& stop, const RayTracer* tracer);
     void add_sections(const Occluders& occluders, const Bvh& tree, const FaceGroups& groups);
     void finish(const StopRequest& stop);
 

@@ -112,7 +112,8 @@ ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
         for (const Point& p : b.points) box.add(p);
         boxes_.push_back(box);
     }
-    constexpr double enlarged = 0.1;  // share of the slack
+    // Share of the slack. Derived from the slack of faces, which must stay larger.
+    constexpr double enlarged = 0.1;
     for (const ConvexBlocker& b : blockers_) planes_.add(b, enlarged * slack_);
     hidden_.resize(faces_.size() * faces_.size());
     sides_.resize(faces_.size() * blockers_.size());
