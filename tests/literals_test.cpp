@@ -16,19 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders of the engine in which numbers control the amount of work.
-const std::vector<std::string> deciding{"direct",
-                                        "visibility",
-                                        "mesh",
-                                        "transport",
-                                        "links",
-                                        "solution",
-                                        "gather",
-                                        "evaluate",
-                                        "discontinuity",
-                                        "error",
-                                        "reference",
-                                        "methods",
-                                        "what_if/light_groups"};
+const std::vector<std::string> deciding{"direct",    "visibility", "mesh",         "transport",           "links",
+                                        "solution",  "gather",     "evaluate",     "discontinuity",       "error",
+                                        "reference", "methods",    "view_factors", "what_if/light_groups"};
 
 /// Exceptions, which no solve uses.
 const std::vector<std::string> apart{"evaluate/surface_levels.cpp", "reference/compare.cpp", "methods/options/",

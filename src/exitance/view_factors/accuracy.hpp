@@ -6,7 +6,9 @@
 
 namespace exitance {
 
-/// R, the limit on the error of every row: default, and limits for programs and users.
+/// R, the limit on the error of every row: default, and limits for programs and users. Derived from three significant
+/// digits of a row, from the rounding of contour integrals, which are accurate to 1e-4 of the smallest, and from half
+/// of a row.
 inline constexpr double default_row_error = 1e-3, min_row_error = 1e-7, max_row_error = 0.5;
 
 /// Relative error of every entry above `smallest_entry`: default, and limits for programs and users. The least one is

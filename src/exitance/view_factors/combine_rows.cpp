@@ -12,8 +12,10 @@
 namespace exitance {
 namespace {
 
-constexpr int max_sweeps = 200;         ///< Maximum number of sweeps of the relaxation of closure defects.
-constexpr double settled_share = 1e-6;  ///< Remaining share of the largest defect at which the relaxation stops.
+constexpr int max_sweeps = 200;  ///< Maximum number of sweeps of the relaxation of closure defects.
+/// Remaining share of the largest defect at which the relaxation stops. Derived from the six decimals with which row
+/// sums are printed.
+constexpr double settled_share = 1e-6;
 
 /// An exchange area A_i F_ij, m^2, and its variance.
 struct Exchange {

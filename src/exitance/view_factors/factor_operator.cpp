@@ -10,8 +10,10 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t rows_a_task = 256, rows_a_block = 16384;
-constexpr int threshold_steps = 10;           ///< Bisections of the logarithm of a row's threshold.
-constexpr double min_threshold_share = 1e-4;  ///< Smallest threshold, as a share of the largest.
+constexpr int threshold_steps = 10;  ///< Bisections of the logarithm of a row's threshold.
+/// Smallest threshold, as a share of the largest. Derived from threshold_steps: they leave a factor of 1.01 between
+/// two thresholds.
+constexpr double min_threshold_share = 1e-4;
 
 /// Sum of the values of all faces of each node, after the values themselves.
 std::vector<double> with_sums(const FaceTree& tree, std::vector<double> of_faces) {

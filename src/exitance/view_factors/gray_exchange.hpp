@@ -16,7 +16,8 @@ constexpr double stefan_boltzmann = 5.670374419e-8;
 
 /// Thermal state of a surface: gray, diffuse and opaque. Either its temperature or its net heat is given.
 struct ThermalSurface {
-    double emissivity = 0.9;                 ///< Emissivity, in (0, 1].
+    /// Emissivity, in (0, 1]. The default is derived from paint and masonry, see ISO 6946.
+    double emissivity = 0.9;
     std::optional<double> temperature = {};  ///< K
     double heat = 0;  ///< Net radiative heat that leaves the surface, W; used if there is no temperature. 0: adiabatic.
 };

@@ -1,137 +1,35 @@
 #include "exitance/view_factors/hidden_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/scene/borders.hpp"
 #include "exitance/visibility/narrow_gaps.hpp"
-#include "exitance/visibility/rays.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr double min_width = 16;  ///< Width of a part, in units of the slack; derived from the rounding of corners.
-constexpr std::size_t max_corners = 12;  ///< Limit on the corners of a convex piece.
-/// Number of rays that decide whether the space in front of a face is inside a body. A choice.
+/// Number of rays that decide whether the space in front of a face is inside a solid. A choice.
 constexpr std::size_t probing_rays = 64;
+constexpr std::size_t faces_a_task = 16;
 
-Box everywhere() {
-    Box box;
-    box.lo = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, box.hi = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
-    return box;
-}
-
-Box grown(const Box& box, double by) {
-    Box out = box;
-    out.lo = box.lo - Vec3{by, by, by}, out.hi = box.hi + Vec3{by, by, by};
-    return out;
-}
-
-bool overlap(const Box& a, const Box& b, double slack) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (a.lo[k] > b.hi[k] + slack || b.lo[k] > a.hi[k] + slack) return false;
-    return true;
-}
-
-bool is_negligible(std::span<const Point> outline, double slack) {
-    if (outline.size() < 3) return true;
-    Box box;
-    for (const Point& p : outline) box.add(p);
-    return norm(area_vector(outline)) <= min_width * slack * box.diagonal();
-}
-
-/// Returns the plane through an edge and perpendicular to the polygon's plane, with the polygon in front.
-Plane side_plane(const Point& a, const Point& b, const Normal& n) {
-    const Normal inwards = normalized(cross(n, b - a));
-    return {inwards, dot(inwards, a)};
-}
-
-/// Intersection of two convex polygons with normal n.
-std::vector<Point> intersection(std::vector<Point> polygon, std::span<const Point> other, const Normal& n) {
-    std::vector<Point> next;
-    for (std::size_t i = 0; i < other.size() && polygon.size() >= 3; ++i) {
-        const Point &a = other[i], &b = other[(i + 1) % other.size()];
-        if (!(norm(b - a) > 0)) continue;
-        clip(polygon, side_plane(a, b, n), next);
-        polygon.swap(next);
+/// True if points are on both sides of a plane, farther than `slack` from it (metres).
+bool is_cut(std::span<const Point> points, const Plane& plane, double slack) {
+    bool above = false, below = false;
+    for (const Point& p : points) {
+        const double d = plane.signed_distance(p);
+        above |= d > slack, below |= d < -slack;
     }
-    return polygon;
+    return above && below;
 }
-
-void add_piece(const std::vector<Point>& polygon, std::vector<std::vector<Point>>& pieces) {
-    for (std::size_t first = 1; first + 1 < polygon.size(); first += max_corners - 2) {
-        std::vector<Point>& part = pieces.emplace_back();
-        part.push_back(polygon[0]);
-        for (std::size_t k = first; k < polygon.size() && k < first + max_corners - 1; ++k) part.push_back(polygon[k]);
-    }
-}
-
-/// Adds the parts of a convex polygon outside another one.
-void subtract(const std::vector<Point>& polygon, std::span<const Point> hole, const Normal& n, double slack,
-              std::vector<std::vector<Point>>& pieces) {
-    if (is_negligible(intersection(polygon, hole, n), slack)) {
-        pieces.push_back(polygon);
-        return;
-    }
-    std::vector<Point> rest = polygon, out, next;
-    for (std::size_t i = 0; i < hole.size() && rest.size() >= 3; ++i) {
-        const Point &a = hole[i], &b = hole[(i + 1) % hole.size()];
-        if (!(norm(b - a) > 0)) continue;
-        const Plane inside = side_plane(a, b, n);
-        clip(rest, {-inside.n, -inside.offset}, out);
-        if (!is_negligible(out, slack)) add_piece(out, pieces);
-        clip(rest, inside, next);
-        rest.swap(next);
-    }
-}
-
-/// True if two regions have equal outlines, so that they may be the two sides of a sheet.
-bool have_equal_outlines(const Region& a, const Region& b, double rounding) {
-    if (std::abs(a.area - b.area) > coplanar_share * a.area || a.loops.empty() || b.loops.empty()) return false;
-    Box p, q;
-    for (const Point& x : a.loops[0]) p.add(x);
-    for (const Point& x : b.loops[0]) q.add(x);
-    const double tolerance = coplanar_share * p.diagonal() + rounding;
-    return norm(p.lo - q.lo) <= tolerance && norm(p.hi - q.hi) <= tolerance;
-}
-
-/// Tests whether a point in front of a face is inside a body, where most rays meet backs of faces first.
-class InsideTest {
-  public:
-    explicit InsideTest(const Scene& scene) : scene_(scene) {}
-    bool operator()(const Point& x, SurfaceId face) {
-        if (!tracer_) tracer_ = std::make_unique<RayTracer>(scene_);
-        const ScrambledSobol points(face.value);
-        const Frame frame(scene_.surfaces()[face].normal);
-        std::vector<Vec3> directions(probing_rays);
-        std::vector<RayHit> hits(probing_rays);
-        for (std::uint32_t k = 0; k < probing_rays; ++k)
-            directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
-        tracer_->nearest(directions, x, scene_.surfaces()[face].region, hits);
-        const auto backs =
-            std::count_if(hits.begin(), hits.end(), [](const RayHit& h) { return !h.surface.is_none() && !h.front; });
-        return 2 * static_cast<std::size_t>(backs) > probing_rays;
-    }
-
-  private:
-    const Scene& scene_;
-    std::unique_ptr<RayTracer> tracer_;
-};
 
 /// True if parts of either face are on both sides of the other's plane.
 bool may_cross(const ViewFace& a, const ViewFace& b, double slack) {
-    const auto is_cut = [&](const ViewFace& face, const Plane& plane) {
-        bool above = false, below = false;
-        for (const Point& p : face.outline) {
-            const double d = plane.signed_distance(p);
-            above |= d > slack, below |= d < -slack;
-        }
-        return above && below;
-    };
-    return is_cut(a, b.plane) && is_cut(b, a.plane);
+    return is_cut(a.outline, b.plane, slack) && is_cut(b.outline, a.plane, slack);
 }
 
 /// Finds whether and where one face covers another.
@@ -139,20 +37,15 @@ class Covers {
   public:
     explicit Covers(const Occluders& occluders) : occluders_(occluders), scene_(occluders.scene()) {}
 
-    /// Parts of face a that face b covers, like Occluders::is_covered(). `is_equal` is set if both have the same
-    /// outline and opposite directions, so that they may also be the two sides of a sheet.
-    std::vector<std::vector<Point>> operator()(const ViewFace& a, std::uint32_t i, const ViewFace& b, std::uint32_t j,
-                                               double slack, bool& is_equal) const {
+    /// Parts of face a that face b covers, also if both may be the two sides of a sheet.
+    ConvexParts operator()(const ViewFace& a, std::uint32_t i, const ViewFace& b, std::uint32_t j, double slack) const {
         const RegionId own = region(i), other = region(j);
-        std::vector<std::vector<Point>> parts;
+        ConvexParts parts;
         if (own == other) return parts;
         const double cosine = dot(a.plane.n, b.plane.n), thickness = std::max(occluders_.rounding(), 0.5 * b.thickness);
         if (std::abs(cosine) < parallel_cosine) return parts;
         const double near = 2 * thickness;
         if (!is_within(b.outline, a.plane, near) && !is_within(a.outline, b.plane, near)) return parts;
-        is_equal =
-            cosine < 0 && (occluders_.is_own(other, own) ||
-                           have_equal_outlines(scene_.regions()[own], scene_.regions()[other], occluders_.rounding()));
         const double raised = occluders_.lift(other) - occluders_.lift(own);
         for (const std::vector<Point>& piece : b.pieces) {
             std::vector<Point> flat;
@@ -170,6 +63,15 @@ class Covers {
             }
         }
         return parts;
+    }
+
+    /// True if Occluders::is_covered() recognizes that a part of face i is covered, at its centroid and halfway to its
+    /// corners. It does not recognize faces with equal outlines, which may be the two sides of a sheet.
+    bool is_recognized(std::span<const Point> part, const Normal& n, std::uint32_t i) const {
+        const Point middle = centroid(part);
+        return occluders_.is_covered(middle, n, region(i)) &&
+               std::all_of(part.begin(), part.end(),
+                           [&](const Point& p) { return occluders_.is_covered(0.5 * (middle + p), n, region(i)); });
     }
 
   private:
@@ -190,132 +92,232 @@ std::vector<Point> section(const std::vector<Point>& piece, const Plane& plane, 
     return is_negligible(inside, slack) || dot(area_vector(inside), plane.n) <= 0 ? std::vector<Point>() : inside;
 }
 
-bool crosses(const ConvexBlocker& solid, const Plane& plane, double slack) {
-    bool above = false, below = false;
-    for (const Point& p : solid.points) {
-        const double d = plane.signed_distance(p);
-        above |= d > slack, below |= d < -slack;
-    }
-    return above && below;
-}
-
 }  // namespace
 
-HiddenParts::HiddenParts(const Occluders& occluders, std::span<const ViewFace> faces, double slack)
-    : faces_(faces), slack_(slack), parts_(faces.size()), is_met_(faces.size()) {
+HiddenParts::HiddenParts(const Occluders& occluders, std::span<const ViewFace> faces, double slack,
+                         const StopRequest& stop, const RayTracer* tracer, const FaceGroups* groups)
+    : faces_(faces), slack_(slack), found_(faces.size()) {
     std::vector<Box> boxes;
     boxes.reserve(faces.size());
     for (const ViewFace& face : faces) boxes.push_back(face.box);
     const Bvh tree(boxes);
-    add_covers(occluders, tree);
+    add_covers(occluders, tree, stop, tracer);
     std::vector<std::uint8_t> is_crossed(faces.size());
-    parallel_for(faces.size(), 16, [&](std::size_t i) {
+    parallel_for(faces.size(), faces_a_task, [&](std::size_t i) {
+        if (stop.requested()) return;
         tree.visit_box(faces[i].box, [&](std::uint32_t j) {
             return j < i && may_cross(faces[i], faces[j], slack) && (is_crossed[i] = 1);
         });
     });
     const bool any_crossed = std::find(is_crossed.begin(), is_crossed.end(), 1) != is_crossed.end();
-    const bool any = std::any_of(parts_.begin(), parts_.end(), [](const auto& parts) { return !parts.empty(); });
-    if (!any && !any_crossed) {
-        parts_.clear(), is_met_.clear();
-        return;
+    const bool any = std::any_of(found_.begin(), found_.end(), [](const auto& parts) { return !parts.empty(); });
+    if ((any || any_crossed) && !stop.requested()) {
+        std::optional<FaceGroups> own_groups;
+        if (!groups) groups = &own_groups.emplace(faces, slack);
+        for (auto& parts : found_)
+            for (HiddenPart& part : parts) {
+                // Groups shield what they hide unless faces pierce them; add_sections() checks that.
+                const FaceGroup& group = groups->of(part.by);
+                part.is_shielded = group.bounds_solid();
+                if (part.is_shielded) part.reach = group.box;
+            }
+        if (any_crossed) add_sections(occluders, tree, *groups);
+        finish(stop);
     }
-    const FaceBodies bodies(faces, slack);
-    for (auto& parts : parts_)
-        for (HiddenPart& part : parts) {
-            // `by_solid` holds for closed bodies unless faces pierce them; add_sections() checks that.
-            const FaceBodies::Body& body = bodies.of(part.by);
-            const bool is_flat =
-                body.box.diagonal() > 0 && std::all_of(body.faces.begin(), body.faces.end(), [&](std::uint32_t k) {
-                    return std::abs(dot(faces[k].plane.n, faces[part.by].plane.n)) >= parallel_cosine;
-                });
-            part.by_solid = body.is_closed && !is_flat;
-            part.body = part.by_solid ? body.box : everywhere();
-        }
-    if (any_crossed) add_sections(occluders, tree, bodies);
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        is_met_[i] = std::any_of(parts_[i].begin(), parts_[i].end(), [](const HiddenPart& p) { return !p.by_solid; });
-    has_uncovered_.resize(faces.size());
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        has_uncovered_[i] =
-            std::any_of(parts_[i].begin(), parts_[i].end(), [](const HiddenPart& p) { return !p.is_covered; });
+    found_ = {};
 }
 
-void HiddenParts::add_covers(const Occluders& occluders, const Bvh& tree) {
+void HiddenParts::add_covers(const Occluders& occluders, const Bvh& tree, const StopRequest& stop,
+                             const RayTracer* tracer) {
     const Covers covers(occluders);
-    InsideTest is_inside(occluders.scene());
-    parallel_for(faces_.size(), 16, [&](std::size_t i) {
+    parallel_for(faces_.size(), faces_a_task, [&](std::size_t i) {
+        if (stop.requested()) return;
         const ViewFace& face = faces_[i];
         std::vector<std::uint32_t> near;
         tree.visit_box(grown(face.box, face.thickness + slack_), [&](std::uint32_t j) {
             if (j != i && std::abs(dot(face.plane.n, faces_[j].plane.n)) >= parallel_cosine) near.push_back(j);
-            return false;
         });
         std::sort(near.begin(), near.end());
         for (const std::uint32_t j : near) {
-            bool is_equal = false;
-            for (auto& outline : covers(face, static_cast<std::uint32_t>(i), faces_[j], j, slack_, is_equal))
-                parts_[i].push_back({std::move(outline), {}, !is_equal, true, j});
+            for (auto& outline : covers(face, static_cast<std::uint32_t>(i), faces_[j], j, slack_)) {
+                const bool is_covered = covers.is_recognized(outline, face.plane.n, static_cast<std::uint32_t>(i));
+                found_[i].push_back({std::move(outline), {}, is_covered, true, j});
+            }
         }
     });
-    for (std::size_t i = 0; i < faces_.size(); ++i)
-        std::erase_if(parts_[i], [&](const HiddenPart& part) {
-            return !part.is_covered && !is_inside(centroid(part.outline), SurfaceId(static_cast<std::uint32_t>(i)));
-        });
+    if (!stop.requested()) drop_sheets(occluders, stop, tracer);
 }
 
-void HiddenParts::add_sections(const Occluders& occluders, const Bvh& tree, const FaceBodies& bodies) {
+/// Tests whether a point in front of a face is inside a solid. Rays from there meet backs of faces, and fronts that
+/// other faces cover. Faces with equal outlines do not tell: both the sides of a sheet and two boxes side by side have
+/// them.
+bool HiddenParts::is_inside(const Occluders& occluders, const RayTracer& tracer, const UncertainPart& part,
+                            std::span<const UncertainPart> uncertain) const {
+    const Scene& scene = occluders.scene();
+    const SurfaceId face(part.face);
+    const Point x = centroid(found_[part.face][part.part].outline);
+    const ScrambledSobol points(face.value);
+    const Frame frame(scene.surfaces()[face].normal);
+    std::array<Vec3, probing_rays> directions;
+    std::array<RayHit, probing_rays> hits;
+    for (std::uint32_t k = 0; k < probing_rays; ++k)
+        directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+    tracer.nearest(directions, x, scene.surfaces()[face].region, hits);
+    std::size_t fronts = 0, backs = 0;
+    for (std::size_t k = 0; k < probing_rays; ++k) {
+        const RayHit& hit = hits[k];
+        if (hit.surface.is_none()) {
+            ++fronts;
+            continue;
+        }
+        const Surface& surface = scene.surfaces()[hit.surface];
+        const Point place = place_of(scene, hit, x, directions[k]);
+        bool may_be_sheet = false;
+        for (auto other = std::lower_bound(uncertain.begin(), uncertain.end(), hit.surface.value,
+                                           [](const UncertainPart&u, std::uint32_t i) { return u.face < i; });
+             other != uncertain.end() && other->face == hit.surface.value; ++other)
+            may_be_sheet |= contains(found_[other->face][other->part].outline, surface.normal, place);
+        if (may_be_sheet) continue;
+        ++(!hit.front || occluders.is_covered(place, surface.normal, surface.region) ? backs : fronts);
+    }
+    return backs > fronts;
+}
+
+/// Removes covers between the two sides of a sheet, which hide nothing.
+void HiddenParts::drop_sheets(const Occluders& occluders, const StopRequest& stop, const RayTracer* tracer) {
+    std::vector<UncertainPart> uncertain;  // sorted by face
+    for (std::uint32_t i = 0; i < faces_.size(); ++i)
+        for (std::size_t k = 0; k < found_[i].size(); ++k)
+            if (!found_[i][k].is_covered) uncertain.push_back({i, k});
+    if (uncertain.empty()) return;
+    std::optional<RayTracer> own_tracer;
+    if (!tracer) tracer = &own_tracer.emplace(occluders.scene());
+    std::vector<std::uint8_t> is_hidden(uncertain.size());
+    parallel_for(uncertain.size(), faces_a_task, [&](std::size_t k) {
+        if (stop.requested()) return;
+        is_hidden[k] = is_inside(occluders, *tracer, uncertain[k], uncertain);
+    });
+    for (std::size_t k = uncertain.size(); k-- > 0;)
+        if (!is_hidden[k]) {
+            auto& parts = found_[uncertain[k].face];
+            parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(uncertain[k].part));
+        }
+}
+
+void HiddenParts::add_sections(const Occluders& occluders, const Bvh& tree, const FaceGroups& groups) {
     std::vector<ConvexBlocker> solids = make_solid_blockers(occluders, slack_);
-    std::erase_if(solids, [&](const ConvexBlocker& solid) { return bodies.has_body_inside(solid, faces_, slack_); });
+    std::erase_if(solids, [&](const ConvexBlocker& solid) { return groups.is_hollow(solid); });
     std::vector<Box> boxes;
     for (const ConvexBlocker& solid : solids) {
-        Box box;
-        for (const Point& p : solid.points) box.add(p);
+        const Box box = box_of(solid.points);
         boxes.push_back(box);
         tree.visit_box(box, [&](std::uint32_t i) {
-            if (!crosses(solid, faces_[i].plane, slack_)) return false;
+            if (!is_cut(solid.points, faces_[i].plane, slack_)) return;
             for (const std::vector<Point>& piece : faces_[i].pieces)
                 if (std::vector<Point> inside = section(piece, faces_[i].plane, solid, slack_); !inside.empty())
-                    parts_[i].push_back({std::move(inside), box, false, true, i});
-            return false;
+                    found_[i].push_back({std::move(inside), box, false, true, i});
         });
     }
-    // Rays may start inside other closed bodies.
-    for (auto& parts : parts_)
+    // Rays may start inside other closed groups.
+    const Bvh solid_tree(boxes);
+    for (auto& parts : found_)
         for (HiddenPart& part : parts)
-            part.by_solid = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-                return norm(box.lo - part.body.lo) <= slack_ && norm(box.hi - part.body.hi) <= slack_;
+            part.is_shielded = part.reach && solid_tree.visit_box(*part.reach, [&](std::uint32_t k) {
+                return norm(boxes[k].lo - part.reach->lo) <= slack_ && norm(boxes[k].hi - part.reach->hi) <= slack_;
             });
 }
 
-bool HiddenParts::contains_uncovered(std::size_t face, const Point& x) const {
-    if (!has(face) || !has_uncovered_[face]) return false;
-    return std::any_of(parts_[face].begin(), parts_[face].end(), [&](const HiddenPart& part) {
-        return !part.is_covered && contains(part.outline, faces_[face].plane.n, x);
+/// Makes the structures by which the parts of a face are found.
+void HiddenParts::finish(const StopRequest& stop) {
+    numbers_.assign(faces_.size(), none);
+    std::vector<std::uint32_t> owners;
+    for (std::uint32_t i = 0; i < faces_.size(); ++i)
+        if (!found_[i].empty()) numbers_[i] = static_cast<std::uint32_t>(owners.size()), owners.push_back(i);
+    faces_with_parts_.resize(owners.size());
+    parallel_for(owners.size(), 1, [&](std::size_t k) {
+        if (stop.requested()) return;
+        const ViewFace& whole = faces_[owners[k]];
+        Face& face = faces_with_parts_[k];
+        face.parts = std::move(found_[owners[k]]);
+        const auto first_limited = std::stable_partition(face.parts.begin(), face.parts.end(),
+                                                         [](const HiddenPart& part) { return !part.reach; });
+        face.unlimited = static_cast<std::size_t>(first_limited - face.parts.begin());
+        std::vector<Box> outlines, reaches;
+        std::vector<std::span<const Point>> holes;
+        for (const HiddenPart& part : face.parts) {
+            outlines.push_back(grown(box_of(part.outline), whole.thickness + slack_));
+            if (part.reach)
+                reaches.push_back(*part.reach);
+            else
+                holes.push_back(part.outline);
+            face.is_met |= !part.is_shielded, face.has_uncovered |= !part.is_covered;
+        }
+        face.outlines = Bvh(outlines);
+        face.unlimited_outlines = Bvh(std::span(outlines).first(face.unlimited));
+        face.reaches = Bvh(reaches);
+        if (holes.empty()) return;
+        for (const std::vector<Point>& piece : whole.pieces)
+            subtract(piece, holes, whole.plane.n, slack_, face.remaining);
     });
 }
 
-bool HiddenParts::matters(const HiddenPart& part, const ViewFace& other) const {
-    if (!overlap(part.body, other.box, slack_)) return false;
+bool HiddenParts::contains_uncovered(std::size_t i, const Point& x) const {
+    const Face* const face = find(i);
+    if (!face || !face->has_uncovered) return false;
+    Box place;
+    place.add(x);
+    return face->outlines.visit_box(place, [&](std::uint32_t k) {
+        const HiddenPart& part = face->parts[k];
+        return !part.is_covered && contains(part.outline, faces_[i].plane.n, x);
+    });
+}
+
+bool HiddenParts::is_in_front(const HiddenPart& part, const ViewFace& other) const {
     return std::any_of(part.outline.begin(), part.outline.end(),
                        [&](const Point& p) { return other.plane.signed_distance(p) > slack_; });
 }
 
-bool HiddenParts::matter(std::size_t i, std::size_t j) const {
-    return has(i) && std::any_of(parts_[i].begin(), parts_[i].end(),
-                                 [&](const HiddenPart& part) { return matters(part, faces_[j]); });
+/// True if some part without a reach is in front of another face.
+bool HiddenParts::shows_unlimited(const Face& face, const ViewFace& other) const {
+    if (face.unlimited == 0) return false;
+    ConvexRegion front;
+    front.add(other.plane);
+    return face.unlimited_outlines.visit_region(front,
+                                                [&](std::uint32_t k) { return is_in_front(face.parts[k], other); });
 }
 
-std::vector<std::vector<Point>> HiddenParts::pieces(std::size_t i, std::size_t j) const {
-    std::vector<std::vector<Point>> pieces = faces_[i].pieces, next;
-    if (!has(i)) return pieces;
-    for (const HiddenPart& part : parts_[i]) {
-        if (!matters(part, faces_[j])) continue;
-        next.clear();
-        for (const std::vector<Point>& piece : pieces) subtract(piece, part.outline, faces_[i].plane.n, slack_, next);
-        pieces.swap(next);
-    }
-    return pieces;
+/// Calls visit(part) for every part that has a reach, until it returns true.
+template <class Visit>
+void HiddenParts::visit_limited(const Face& face, const ViewFace& other, const Visit& visit) const {
+    face.reaches.visit_box(grown(other.box, slack_), [&](std::uint32_t k) {
+        const HiddenPart& part = face.parts[face.unlimited + k];
+        return is_in_front(part, other) && visit(part);
+    });
+}
+
+std::size_t HiddenParts::count_from(std::size_t i, std::size_t j, std::size_t limit) const {
+    const Face* const face = find(i);
+    if (!face) return 0;
+    const ViewFace& other = faces_[j];
+    std::size_t count = shows_unlimited(*face, other) ? face->unlimited : 0;
+    if (count < limit) visit_limited(*face, other, [&](const HiddenPart&) { return ++count >= limit; });
+    return std::min(count, limit);
+}
+
+const ConvexParts& HiddenParts::pieces(std::size_t i, std::size_t j, ConvexParts& scratch) const {
+    const Face* const face = find(i);
+    if (!face) return faces_[i].pieces;
+    const ViewFace& other = faces_[j];
+    const ConvexParts& whole = shows_unlimited(*face, other) ? face->remaining : faces_[i].pieces;
+    std::vector<std::span<const Point>> holes;
+    visit_limited(*face, other, [&](const HiddenPart& part) {
+        holes.emplace_back(part.outline);
+        return false;
+    });
+    if (holes.empty()) return whole;
+    scratch.clear();
+    for (const std::vector<Point>& piece : whole) subtract(piece, holes, faces_[i].plane.n, slack_, scratch);
+    return scratch;
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/row_factors.hpp"
 #include "support/dense_view_factors.hpp"
@@ -14,29 +15,10 @@
 namespace exitance {
 namespace {
 
-using Outlines = std::vector<Outline>;
-
-/// Adds the faces of a prism over a polygon, which is counter-clockwise seen from above: bottom, top, sides.
-void add_prism(Outlines& faces, const std::vector<Vec2>& base, double low, double high, bool inwards = false) {
-    const std::size_t first = faces.size();
-    Outline bottom, top;
-    for (const Vec2& p : base) bottom.insert(bottom.begin(), {p.x, p.y, low}), top.push_back({p.x, p.y, high});
-    faces.push_back(bottom), faces.push_back(top);
-    for (std::size_t i = 0; i < base.size(); ++i) {
-        const Vec2 p = base[i], q = base[(i + 1) % base.size()];
-        faces.push_back({{p.x, p.y, low}, {q.x, q.y, low}, {q.x, q.y, high}, {p.x, p.y, high}});
-    }
-    for (std::size_t k = first; inwards && k < faces.size(); ++k) std::reverse(faces[k].begin(), faces[k].end());
-}
-
-void add_box(Outlines& faces, const Point& a, const Point& b, bool inwards = false) {
-    add_prism(faces, {{a.x, a.y}, {b.x, a.y}, {b.x, b.y}, {a.x, b.y}}, a.z, b.z, inwards);
-}
-
 /// A room of 5 x 4 x 3 m. Faces 0 to 5: floor, ceiling, walls y = 0, x = 5, y = 4, x = 0.
 Outlines room() {
     Outlines faces;
-    add_box(faces, {0, 0, 0}, {5, 4, 3}, true);
+    add_box_faces(faces, {0, 0, 0}, {5, 4, 3}, true);
     return faces;
 }
 
@@ -90,8 +72,8 @@ void expect_sums(const Outlines& outlines, const std::vector<Expected>& expected
 /// Two boxes side by side on the floor. Faces 6 to 11 and 12 to 17: bottom, top, y = 1, right, y = 2, left.
 Outlines touching(double height) {
     Outlines faces = room();
-    add_box(faces, {1, 1, 0}, {2, 2, 1});
-    add_box(faces, {2, 1, 0}, {3, 2, height});
+    add_box_faces(faces, {1, 1, 0}, {2, 2, 1});
+    add_box_faces(faces, {2, 1, 0}, {3, 2, height});
     return faces;
 }
 
@@ -110,36 +92,36 @@ TEST(HiddenParts, BoxesOfEqualHeightHideTheirCommonSide) {
 
 TEST(HiddenParts, BoxesInACornerHidePartsOfFloorAndWalls) {
     Outlines faces = room();
-    add_box(faces, {0, 0, 0}, {1, 1, 1});
-    add_box(faces, {1, 0, 0}, {2, 0.6, 0.5});
-    add_box(faces, {0, 1, 0}, {0.5, 2, 0.8});
+    add_box_faces(faces, {0, 0, 0}, {1, 1, 1});
+    add_box_faces(faces, {1, 0, 0}, {2, 0.6, 0.5});
+    add_box_faces(faces, {0, 1, 0}, {0.5, 2, 0.8});
     expect_sums(faces, {{0, 1 - 2.1 / 20}, {2, 0.9}, {5, 0.85}, {9, 0.7}, {10, 0.6}});
 }
 
 TEST(HiddenParts, ABodyThatPiercesFloorAndWallHidesWhatIsInside) {
     Outlines faces = room();
-    add_box(faces, {-0.3, 1, -0.3}, {1, 2, 1});
+    add_box_faces(faces, {-0.3, 1, -0.3}, {1, 2, 1});
     expect_sums(faces, {{0, 0.95}, {5, 1 - 1.0 / 12}});
 }
 
 TEST(HiddenParts, ABodyThatPiercesAContactHidesItsSection) {
     Outlines faces = touching(0.5);
-    add_box(faces, {1.5, 1.3, 0.25}, {2.6, 1.7, 0.75});
+    add_box_faces(faces, {1.5, 1.3, 0.25}, {2.6, 1.7, 0.75});
     // as it is, and moved: five positions would take four fifths of the time of all these tests
     expect_sums(faces, {{0, 0.9}, {9, 0.4}, {17, 0}}, 3);
 }
 
 TEST(HiddenParts, ABoxInTheNotchOfAnotherBodyIsHiddenWhereTheyTouch) {
     Outlines faces = room();
-    add_prism(faces, {{1, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 3}, {1, 3}}, 0, 1);
-    add_box(faces, {2, 2, 0}, {2.6, 2.4, 0.6});
+    add_prism_faces(faces, {{1, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 3}, {1, 3}}, 0, 1);
+    add_box_faces(faces, {2, 2, 0}, {2.6, 2.4, 0.6});
     expect_sums(faces, {{0, 0.838}, {10, 0.64}, {11, 0.76}, {16, 0}, {19, 0}});
 }
 
 TEST(HiddenParts, AShellAroundARoomDoesNotHideIt) {
     Outlines faces = room();
-    add_box(faces, {1, 1, 0}, {2, 2, 1});
-    add_box(faces, {-1, -1, -1}, {6, 5, 4});
+    add_box_faces(faces, {1, 1, 0}, {2, 2, 1});
+    add_box_faces(faces, {-1, -1, -1}, {6, 5, 4});
     expect_sums(faces, {{0, 0.95}, {1, 1}, {7, 1}, {13, 0}});
 }
 
@@ -147,6 +129,54 @@ TEST(HiddenParts, APosterHidesPartOfItsWall) {
     Outlines faces = room();
     faces.push_back({{1, 0, 2}, {2, 0, 2}, {2, 0, 1}, {1, 0, 1}});
     expect_sums(faces, {{0, 1}, {2, 1 - 1.0 / 15}, {6, 1}});
+}
+
+TEST(HiddenParts, ManyPostersHideTheirPartsOfTheFloor) {
+    constexpr int columns = 10, rows = 8;
+    Outlines faces = room();
+    for (int i = 0; i < columns; ++i)
+        for (int j = 0; j < rows; ++j) {
+            const double x = 0.5 * i, y = 0.5 * j;
+            faces.push_back(
+                {{x + 0.1, y + 0.1, 0}, {x + 0.4, y + 0.1, 0}, {x + 0.4, y + 0.4, 0}, {x + 0.1, y + 0.4, 0}});
+        }
+    expect_sums(faces, {{0, 1 - columns * rows * 0.09 / 20}, {1, 1}, {6, 1}, {6 + columns * rows - 1, 1}});
+}
+
+TEST(HiddenParts, ARowOfEqualBoxesIsOneGroupAndHidesItsSides) {
+    Outlines faces = room();
+    for (int i = 0; i < 6; ++i) add_box_faces(faces, {1 + 0.5 * i, 1, 0}, {1.5 + 0.5 * i, 2, 0.8});
+    expect_sums(faces, {{0, 0.85}, {9, 0}, {11, 1}, {17, 0}, {6 + 6 * 5 + 3, 1}}, 2);
+}
+
+TEST(HiddenParts, AreTheSameOnAnyNumberOfThreads) {
+    Outlines faces = touching(1);
+    add_box_faces(faces, {1.5, 1.3, 0.25}, {2.6, 1.7, 0.75});
+    const Scene scene = transformed_scene(faces, turned);
+    const Occluders occluders(scene);
+    const std::vector<ViewFace> view_faces = make_view_faces(scene);
+    set_threads(1);
+    const HiddenParts alone(occluders, view_faces, 1e-7, StopRequest());
+    set_threads(4);
+    const HiddenParts together(occluders, view_faces, 1e-7, StopRequest());
+    set_threads(0);
+    for (std::size_t i = 0; i < view_faces.size(); ++i) {
+        ASSERT_EQ(alone.of(i).size(), together.of(i).size());
+        for (std::size_t k = 0; k < alone.of(i).size(); ++k) {
+            EXPECT_EQ(alone.of(i)[k].outline, together.of(i)[k].outline);
+            EXPECT_EQ(alone.of(i)[k].by, together.of(i)[k].by);
+        }
+    }
+}
+
+TEST(HiddenParts, AStopRequestEndsTheSearch) {
+    const Scene scene = scene_of(touching(1));
+    const Occluders occluders(scene);
+    const std::vector<ViewFace> view_faces = make_view_faces(scene);
+    StopRequest stop;
+    stop.interrupt();
+    const HiddenParts parts(occluders, view_faces, 1e-7, stop);
+    for (std::size_t i = 0; i < view_faces.size(); ++i) EXPECT_FALSE(parts.has(i));
 }
 
 TEST(HiddenParts, NeitherRoomsNorTwoSidedSheetsHaveAny) {
@@ -158,7 +188,7 @@ TEST(HiddenParts, NeitherRoomsNorTwoSidedSheetsHaveAny) {
     const Scene scene = transformed_scene(faces, turned);
     const Occluders occluders(scene);
     const std::vector<ViewFace> view_faces = make_view_faces(scene);
-    const HiddenParts parts(occluders, view_faces, 1e-7);
+    const HiddenParts parts(occluders, view_faces, 1e-7, StopRequest());
     for (std::size_t i = 0; i < view_faces.size(); ++i) EXPECT_FALSE(parts.has(i)) << i;
 }
 

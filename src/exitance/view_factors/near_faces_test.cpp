@@ -11,7 +11,7 @@ namespace {
 /// A face that is left out would be a hole in the list of candidates of a row.
 TEST(NearFaces, NoFaceAboveTheLimitIsLeftOut) {
     const Scene scene = *make_scene(*generate_scene("complex", {{"m", "12"}})).scene;
-    const RowScene ready(scene);
+    const RowScene ready(scene, StopRequest());
     const double negligible = 1e-3;
     std::size_t visits = 0, within = 0;
     for (std::size_t i = 0; i < ready.faces.size(); i += 7) {

@@ -21,7 +21,10 @@ constexpr std::size_t batches = 64;  ///< the mean of this many is approximately
 /// chance alone causes such a difference for one correct entry in ten million. The largest difference of 3,200 entries
 /// of four scenes, checked with the default number of rays, was 4.1 (`viewfactors --seed 1` to 8).
 constexpr double max_deviations = 6;
-constexpr double near_sizes = 0.2;  ///< Distance over the larger face's size; the kernel of nearer pairs is unbounded.
+/// Distance over the larger face's size; the kernel of nearer pairs is unbounded. Measured by `exitance viewfactors
+/// SCENE --tolerance 1e-3 --check 200` for boxes: with four times as much, the median error of the rays is 1.7 times
+/// as large; with a quarter, 0.8 times.
+constexpr double near_sizes = 0.2;
 
 /// Mean of the batches' means, and its standard error.
 struct BatchSums {
@@ -137,7 +140,7 @@ RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const Ray
     RayCheck check;
     const std::vector<DrawnEntry> drawn = draw_entries(table, options);
     if (drawn.empty()) return check;
-    const RowScene ready(scene);
+    const RowScene ready(scene, stop);
     std::vector<RayEntry> found(drawn.size());
     std::atomic<bool> stopped{false};
     shared_ranges(

@@ -40,7 +40,7 @@ constexpr double parallel_squares = 0.199824895698387;
 
 TEST(RayCheck, RaysAgreeWithThePublishedFactorWithinTheirErrors) {
     const Scene scene = squares_with_a_board(false);
-    const RayEntry found = view_factor_by_rays(RowScene(scene), 0, 1, 1u << 14, 1);
+    const RayEntry found = view_factor_by_rays(RowScene(scene, StopRequest()), 0, 1, 1u << 14, 1);
     EXPECT_NEAR(found.F, parallel_squares, 4 * found.standard_error);
     EXPECT_LT(found.standard_error, 0.01 * parallel_squares);
 }

@@ -144,7 +144,7 @@ RowCheck check_rows_by_rays(const Scene& scene, std::span<const std::uint8_t> fi
     RowCheck check;
     const std::vector<std::size_t> faces = draw_rows(finished, options);
     if (faces.empty()) return check;
-    const RowScene ready(scene);
+    const RowScene ready(scene, stop);
     check.rows.resize(faces.size());
     shared_ranges(
         faces.size(), 1,

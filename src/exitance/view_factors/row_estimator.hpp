@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -59,6 +60,11 @@ class RowEstimator {
         std::size_t batches = 0, rays_a_batch = 0;
     };
 
+    struct Candidate {
+        double about;  ///< F_ij without occlusion, from the faces' centres.
+        std::uint32_t column;
+    };
+
     void find_candidates(std::size_t face);
     double left_of_cast(std::size_t face, std::uint32_t column) const;
     double left_of_pair(std::size_t face, std::uint32_t column) const;
@@ -66,8 +72,10 @@ class RowEstimator {
     bool may_be_under(std::size_t face, std::size_t other) const;
     double smallest_candidate(std::size_t face, double variance);
     void classify(std::size_t face, std::uint32_t round);
-    double unoccluded_exchange(std::size_t face, std::size_t other) const;
-    View view_of(std::size_t face, std::size_t other);
+    bool has_many_pieces(std::size_t face, const Candidate& candidate) const;
+    double unoccluded_exchange(std::size_t face, std::size_t other, const ConvexParts& own_pieces,
+                               const ConvexParts& other_pieces) const;
+    View view_of(std::size_t face, std::size_t other, const ConvexParts& own_pieces, const ConvexParts& other_pieces);
     void classify_pair(std::size_t face, Pair& pair, std::uint32_t round);
     Plan plan(double limit);
     void add_rest(double share) {
@@ -83,10 +91,7 @@ class RowEstimator {
     PairSampler sampler_;
     Shaft shaft_;
     std::vector<PieceId> blockers_;
-    struct Candidate {
-        double about;  ///< F_ij without occlusion, from the faces' centres.
-        std::uint32_t column;
-    };
+    std::array<ConvexParts, 2> cut_;  ///< Pieces of a pair of faces without hidden parts.
     std::vector<Candidate> candidates_;
     bool under_others_ = false;  ///< True if another face may cover part of the face.
     std::vector<RowCaster::Count> pilot_;

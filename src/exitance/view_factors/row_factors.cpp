@@ -27,7 +27,9 @@ constexpr std::size_t rows_a_range = 4;  ///< Rows that one thread computes with
 /// after rows were combined with their reciprocal ones.
 constexpr double first_share = 1;
 /// Rows whose error exceeds R after the second pass are recomputed at most `max_repeats` times. Each time, the
-/// tolerance is this share of the one that would suffice if a row's own rays caused all of its variance.
+/// tolerance is this share of the one that would suffice if a row's own rays caused all of its variance. Measured by
+/// `exitance viewfactors SCENE --error 2e-3`: a quarter of it takes 3 to 4 times as long; with four times as much,
+/// errors exceed R by up to 40%.
 constexpr double repeated_share = 0.75;
 constexpr std::uint32_t max_repeats = 4;
 /// Lower limit of the factor on a row's tolerance, derived from errors that fall with the root of the number of rays: a
@@ -123,7 +125,7 @@ class RowRun {
         const std::vector<std::size_t> left = take_resumed(faces, round);
         if (left.empty()) return true;
         progress_.phase(round == 0 ? "view factors" : "rows again");
-        if (!ready_) ready_.emplace(scene_);
+        if (!ready_) ready_.emplace(scene_, stop_);
         const std::size_t before = faces.size() - left.size();
         const std::size_t rows_at_once = rows_a_step * processes();
         for (std::size_t first = 0; first < left.size(); first += rows_at_once) {

@@ -6,13 +6,13 @@
 
 namespace exitance {
 
-RowScene::RowScene(const Scene& s)
+RowScene::RowScene(const Scene& s, const StopRequest& stop)
     : scene(s),
       occluders(s),
       tracer(s),
       faces(make_view_faces(s)),
       slack(plane_slack(occluders)),
-      hidden_parts(occluders, faces, slack) {
+      hidden_parts(occluders, faces, slack, stop, &tracer) {
     samplers.reserve(faces.size());
     for (SurfaceId id : s.surfaces().ids()) samplers.emplace_back(s, id);
     for (const ViewFace& face : faces) {

@@ -14,7 +14,8 @@ namespace exitance {
 /// A scene prepared for computing rows of view factors: faces, samplers, occluders and ray tracer. Immutable; memory
 /// O(faces).
 struct RowScene {
-    explicit RowScene(const Scene& s);
+    /// After a stop request the object is unusable.
+    RowScene(const Scene& s, const StopRequest& stop);
 
     const Scene& scene;
     Occluders occluders;

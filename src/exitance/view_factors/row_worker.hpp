@@ -65,6 +65,7 @@ class RowWorker {
     std::vector<const ConvexBlocker*> standing_between_;
     std::deque<ConvexBlocker> clipped_;
     std::vector<Point> front_r_, front_s_;
+    std::array<ConvexParts, 2> cut_;  ///< Pieces of the receiver and the source without hidden parts.
     OccludedExchange exchange_;
     ClutteredExchange cluttered_exchange_;
     /// Limit on the evaluations of a pair with many blockers.

@@ -39,6 +39,7 @@ SparseFactors sparse_from(const ViewFactors& table, double smallest) {
 
 void close_rows(SparseFactors& table) {
     constexpr int max_sweeps = 1000;
+    // Derived from the seven digits of View3D's files.
     constexpr double tolerance = 1e-7;
     const std::size_t n = table.size();
     std::vector<double> scale(n, 1), sum(n);

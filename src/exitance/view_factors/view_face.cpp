@@ -8,7 +8,6 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_corners = 12;  ///< Limit on the corners of a convex piece.
 /// Limits on the distance of stacked faces, as shares of the scene's size and of a face's box, and on the cosine of
 /// their normals; derived from ConvexPiece::thickness and Occluders::is_covered().
 constexpr double stacked_share = 2 * coplanar_share, stacked_share_of_face = 2 * coplanar_share_of_face;
@@ -21,13 +20,12 @@ ViewFace make_face(const Scene& scene, SurfaceId s) {
     for (const Point& p : face.outline) face.box.add(p);
     face.diameter = face.box.diagonal();
     face.thickness = std::min(stacked_share * scene.size(), stacked_share_of_face * face.diameter);
-    for (const auto& piece : convex_pieces(face.outline, surface.normal))
-        for (std::size_t first = 1; first + 1 < piece.size(); first += max_corners - 2) {
-            std::vector<Point>& part = face.pieces.emplace_back();
-            part.push_back(face.outline[piece[0]]);
-            for (std::size_t k = first; k < piece.size() && k < first + max_corners - 1; ++k)
-                part.push_back(face.outline[piece[k]]);
-        }
+    std::vector<Point> corners;
+    for (const auto& piece : convex_pieces(face.outline, surface.normal)) {
+        corners.clear();
+        for (const std::uint32_t c : piece) corners.push_back(face.outline[c]);
+        add_parts(corners, face.pieces);
+    }
     face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;
     return face;
 }

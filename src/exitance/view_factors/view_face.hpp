@@ -5,6 +5,7 @@
 
 #include "exitance/base/polygon.hpp"
 #include "exitance/scene/scene.hpp"
+#include "exitance/view_factors/convex_parts.hpp"
 
 namespace exitance {
 
@@ -14,10 +15,10 @@ struct ViewFace {
     Plane plane;
     double area = 0;  ///< m^2
     Box box;
-    std::vector<std::vector<Point>> pieces;  ///< Convex parts with at most 12 corners.
-    double diameter = 0;                     ///< Diagonal of its box, metres.
-    bool is_quad = false;                    ///< Convex, with three or four corners.
-    double thickness = 0;                    ///< Limit on the distance of stacked faces, metres, see face_each_other().
+    ConvexParts pieces;    ///< With at most 12 corners each.
+    double diameter = 0;   ///< Diagonal of its box, metres.
+    bool is_quad = false;  ///< Convex, with three or four corners.
+    double thickness = 0;  ///< Limit on the distance of stacked faces, metres, see face_each_other().
 };
 
 /// Returns a scene's faces in the order of its file. The scene must outlive them.

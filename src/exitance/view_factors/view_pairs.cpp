@@ -74,12 +74,10 @@ void lower_raised_sheets(const Occluders& occluders, std::vector<ConvexBlocker>&
 
 /// Replaces hollow solids by their faces: a solid as a whole would hide everything inside it.
 std::vector<ConvexBlocker> with_open_hollows(std::vector<ConvexBlocker> blockers, std::span<const ViewFace> faces,
-                                             double slack) {
-    if (blockers.empty() || !blockers[0].is_solid()) return blockers;
-    const FaceBodies bodies(faces, slack);
+                                             const FaceGroups& groups, double slack) {
     std::vector<ConvexBlocker> out, sheets;
     for (ConvexBlocker& blocker : blockers) {
-        if (!blocker.is_solid() || !bodies.has_body_inside(blocker, faces, slack)) {
+        if (!blocker.is_solid() || !groups.is_hollow(blocker)) {
             out.push_back(std::move(blocker));
             continue;
         }
@@ -105,15 +103,17 @@ ViewPairs::ViewPairs(const Scene& scene, const StopRequest& stop)
     : occluders_(scene),
       slack_(plane_slack(occluders_)),
       faces_(make_view_faces(scene)),
-      hidden_parts_(occluders_, faces_, slack_) {
-    blockers_ = with_open_hollows(make_convex_blockers(occluders_, slack_), faces_, slack_);
+      groups_(faces_, slack_),
+      hidden_parts_(occluders_, faces_, slack_, stop, nullptr, &groups_) {
+    blockers_ = with_open_hollows(make_convex_blockers(occluders_, slack_), faces_, groups_, slack_);
     lower_raised_sheets(occluders_, blockers_);
     for (const ConvexBlocker& b : blockers_) {
         Box box;
         for (const Point& p : b.points) box.add(p);
         boxes_.push_back(box);
     }
-    constexpr double enlarged = 0.1;  // share of the slack
+    // Share of the slack. Derived from the slack of faces, which must stay larger.
+    constexpr double enlarged = 0.1;
     for (const ConvexBlocker& b : blockers_) planes_.add(b, enlarged * slack_);
     hidden_.resize(faces_.size() * faces_.size());
     sides_.resize(faces_.size() * blockers_.size());

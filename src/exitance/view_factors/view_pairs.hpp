@@ -56,6 +56,7 @@ class ViewPairs {
     Occluders occluders_;
     double slack_;
     std::vector<ViewFace> faces_;
+    FaceGroups groups_;
     HiddenParts hidden_parts_;
     std::vector<ConvexBlocker> blockers_;
     std::vector<Box> boxes_;
