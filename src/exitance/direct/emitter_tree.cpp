@@ -66,6 +66,8 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
         out.spread_squared += s.power / out.power * (squared_norm(middle - out.centre) + of_piece);
         out.cosine = std::min(out.cosine, std::max(dot(plane_of(s).n, out.axis), -1.0));
     }
+    constexpr double rounding = 1e-14;  // derived from normals of one plane, which differ by roundings alone
+    if (out.cosine > 1 - rounding) out.cosine = 1;
     out.sine = std::sqrt(1 - out.cosine * out.cosine);
     return out;
 }
@@ -114,16 +116,19 @@ double EmitterTree::exact(const Node& leaf, const SurfacePoint& at) const {
     return point_to_polygon(at.x, at.n, occluders.corners(source.name.piece)) * mean(emitter.exitance);
 }
 
-/// True if the sources are so flat that none shines on a place, or is above its horizon, although a ball around them
-/// is: as for places beside lamps in one plane, and behind them. `d`: from the place to the cluster's centre; `up`: n .
-/// d.
-bool EmitterTree::is_flat_behind(const Node& node, const Normal& n, const Vec3& d, double up) const {
-    // The place is behind a source with normal m at y if m . (x - y) <= 0; m is within the cone around the axis.
+/// True if no source of a cluster can light a place: the place is behind all of them, or all are below its horizon. The
+/// extent of the cluster along its axis is a tighter bound than its ball for lamps in one plane. `d`: from the place to
+/// the cluster's centre; `up`: n . d.
+bool EmitterTree::is_dark(const Node& node, const Normal& n, const Vec3& d, double up) const {
+    const double rounding = direct_->occluders().rounding();
+    // A source at y with the normal m lights x only if m . (x - y) > 0. All m are within a cone around the axis; the
+    // bound holds for cones of up to 90 degrees.
     const double reach = norm(d) + node.radius;
-    if ((-dot(node.axis, d) - node.lowest) * node.cosine + reach * node.sine <= 0) return true;
-    // The corners are within a disk of that radius, and between two planes across the axis.
+    const double above = (-dot(node.axis, d) - node.lowest) * node.cosine + reach * node.sine;
+    if (node.cosine >= 0 && above <= rounding) return true;
+    // All corners are in the ball around the centre, and between two planes across the axis.
     const double tilt = dot(n, node.axis), across = std::sqrt(std::max(0.0, 1 - tilt * tilt));
-    return up + std::max(tilt * node.lowest, tilt * node.highest) + across * node.radius <= 0;
+    return up + std::max(tilt * node.lowest, tilt * node.highest) + across * node.radius <= rounding;
 }
 
 /// From far away a cluster is treated as one source at its centre, with its mean normal m:
@@ -137,7 +142,7 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const SurfacePoint&
     const Node& node = nodes_[number];
     const Vec3 d = node.centre - at.x;
     const double d2 = squared_norm(d), distance = std::sqrt(d2), up = dot(at.n, d);
-    if (up <= -node.radius || is_flat_behind(node, at.n, d, up)) return {number, 0, 0};
+    if (up <= -node.radius || is_dark(node, at.n, d, up)) return {number, 0, 0};
     // Derived from a bound that is finite, and so large that clusters around the point are split first.
     constexpr double min_nearness = 0.1;
     const double nearest = std::max(distance - node.radius, min_nearness * node.radius);

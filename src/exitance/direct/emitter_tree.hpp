@@ -32,7 +32,7 @@ class EmitterTree {
         Point centre;               ///< Centre of power.
         double spread_squared = 0;  ///< Mean squared distance of the sources from the centre, weighted by power, m^2.
         double radius = 0;          ///< Radius of a bounding ball about the centre, m.
-        /// Extent along the axis, relative to the centre, m. 0 for lamps in one plane, whose light none of them meets.
+        /// Extent along the axis, relative to the centre, m. 0 for lamps in one plane.
         double lowest = 0, highest = 0;
         Vec3 normal;                        ///< Mean normal, weighted by power; shorter than 1 if normals differ.
         double normal_spread = 0;           ///< RMS deviation of the normals from `normal`.
@@ -71,7 +71,7 @@ class EmitterTree {
   private:
     Node make_node(std::uint32_t first, std::uint32_t last) const;
     std::uint32_t middle_of(const Node& node);
-    bool is_flat_behind(const Node& node, const Normal& n, const Vec3& d, double up) const;
+    bool is_dark(const Node& node, const Normal& n, const Vec3& d, double up) const;
     Term look_at(std::uint32_t node, const SurfacePoint& at) const;
     void open(const Term& term, const SurfacePoint& at, double most, std::vector<Term>& out) const;
     double exact(const Node& leaf, const SurfacePoint& at) const;

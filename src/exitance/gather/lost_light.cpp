@@ -35,6 +35,8 @@ Rays leaving(const Stage& stage, const ElementTree& tree, const LeafNumbering& n
              std::uint32_t count, std::uint64_t key) {
     const double total = std::accumulate(power.begin(), power.end(), 0.0);
     const ScrambledSobol points(key);
+    RandomStream random(key, Stream::shooting);
+    double place = random.uniform();  // of the next ray, in units of the power per ray
     Rays out;
     double before = 0;
     for (std::size_t i = 0; i < power.size(); ++i) {
@@ -43,7 +45,8 @@ Rays leaving(const Stage& stage, const ElementTree& tree, const LeafNumbering& n
         const Frame frame(stage.scene.regions()[tree.region(e)].plane.n);
         while (out.origins.size() < count) {
             const auto k = static_cast<std::uint32_t>(out.origins.size());
-            if ((k + 0.5) * total > before * count) break;
+            if (place * total > before * count) break;
+            place = k + 1 + random.uniform();
             out.origins.push_back({tree.patch(e).at(tree.uniform(e, points(k, 2), points(k, 3))), tree.region(e)});
             out.directions.push_back(cosine_direction(frame, points(k, 0), points(k, 1)));
             out.sender.push_back(i);
@@ -84,11 +87,12 @@ class LostLight::Backs {
 LostLight::LostLight(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                      std::span<const double> power, std::uint64_t seed) {
     EXI_CHECK(power.size() == numbering.leaves.size());
+    const double total = std::accumulate(power.begin(), power.end(), 0.0);
+    if (!(total > 0)) return;
     const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::shooting));
     const Backs backs(stage.scene, leaving(stage, tree, numbering, power, search_rays, hash(key, 0u)));
     add_rays_from(stage, backs, key);
 
-    const double total = std::accumulate(power.begin(), power.end(), 0.0);
     const Rays rays = leaving(stage, tree, numbering, power, leaving_rays, hash(key, 1u));
     for (std::size_t k = 0; k < rays.hits.size(); ++k) {
         const RayHit& hit = rays.hits[k];

@@ -20,8 +20,9 @@ class LostLight {
     LostLight() = default;
 
     /// Casts some 80,000 rays, in about 0.1 s. `power`: power that each leaf sends, by leaf number, W or any multiple;
-    /// it distributes the rays and changes nothing else. If a share of 1% of the sent light is lost, that power is
-    /// known to about 1% where few backs take it, and to about 4% where very many do or it leaves the scene.
+    /// it distributes the rays, and the mean result does not depend on it. If a share of 1% of the sent light is lost,
+    /// that power is known to about 1% where few backs take it, and to about 4% where very many do or it leaves the
+    /// scene.
     LostLight(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
               std::span<const double> power, std::uint64_t seed);
 
@@ -48,7 +49,7 @@ class LostLight {
   private:
     class Backs;
 
-    void add_rays_from(const Stage& stage, const Backs& backs, std::uint64_t seed);
+    void add_rays_from(const Stage& stage, const Backs& backs, std::uint64_t key);
 
     /// The lost power of b is the sum of areas_[k] b(ends_[k]).
     std::vector<RayEnd> ends_;

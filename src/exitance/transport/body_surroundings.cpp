@@ -9,12 +9,15 @@
 namespace exitance {
 namespace {
 
-/// A face or body is small if its radius is at most this share of the scene's size. Derived from its surroundings,
-/// whose radius is twice as large: they reach over a quarter of the scene at most.
-constexpr double small = 0.125;
-/// BodySurroundings with at most this share of a room's area are a room of their own. Derived from the errors of
-/// bodies, which may be three times the requested one: the error of a larger part of a room is at most about that.
-constexpr double max_share = 0.1;
+/// A body is small if its radius is at most this share of the scene's size; larger ones are ground. Derived from the
+/// surroundings of a body, which then reach over at most a quarter of the scene.
+constexpr double small_body = 0.125;
+/// Surroundings with at most this share of a room's area are a room of their own. Derived from sums of squares: the
+/// error of a part with a larger share is at most twice that of the room.
+constexpr double max_share = 0.25;
+/// Maximum number of bodies with surroundings, the largest ones. Derived from the elements around them: some thousands
+/// in a coarse mesh.
+constexpr std::size_t max_bodies = 64;
 
 double radius_around(const Point& centre, std::span<const Point> corners, double radius) {
     for (const Point& corner : corners) radius = std::max(radius, norm(corner - centre));
@@ -26,24 +29,26 @@ double radius_around(const Point& centre, std::span<const Point> corners, double
 BodySurroundings::BodySurroundings(const Stage& stage) {
     const Scene& scene = stage.scene;
     if (scene.distant().domes.empty()) return;
-    double of_ground = 0, all = 0;  // m^2
-    for (SurfaceId s : scene.surfaces().ids()) {
-        const double area = scene.surfaces()[s].area;
-        const bool is_ground = radius_around(centroid(scene.outline(s)), scene.outline(s), 0) > small * scene.size();
-        all += area, of_ground += is_ground ? area : 0;
-    }
-    if (2 * of_ground < all) return;
     const SceneBodies bodies = find_bodies(scene);
     std::vector<double> radius(bodies.all.size());
     for (SurfaceId s : scene.surfaces().ids()) {
         double& r = radius[bodies.body[s]];
         r = radius_around(bodies.all[bodies.body[s]].centre, scene.outline(s), r);
     }
-    double around = 0;  // upper bound of the area of a ground within the balls, m^2
+    double of_ground = 0, all = 0;  // m^2
+    std::vector<Ball> found;
     for (std::size_t b = 0; b < radius.size(); ++b) {
-        if (radius[b] > small * scene.size()) continue;
-        balls_.push_back({bodies.all[b].centre, 2 * radius[b]});
-        around += pi * balls_.back().radius * balls_.back().radius;
+        const bool is_ground = radius[b] > small_body * scene.size();
+        all += bodies.all[b].area, of_ground += is_ground ? bodies.all[b].area : 0;
+        if (!is_ground) found.push_back({bodies.all[b].centre, 2 * radius[b]});
+    }
+    if (2 * of_ground < all) return;
+    std::stable_sort(found.begin(), found.end(), [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
+    double around = 0;  // area of a ground within the balls, m^2
+    for (const Ball& ball : found) {
+        if (balls_.size() == max_bodies) break;
+        if (contain(ball.centre)) continue;  // such as furniture in a house
+        balls_.push_back(ball), around += pi * ball.radius * ball.radius;
     }
     if (around > max_share * all) balls_.clear();
 }
@@ -54,7 +59,8 @@ bool BodySurroundings::contain(const Point& x) const {
 }
 
 void BodySurroundings::refine(ElementTree& tree) const {
-    // Extent of an element over the radius of the ball. Derived from a ground, which then has some 50 elements in it.
+    // Largest extent of an element over the radius of the ball. Derived from the number of elements: some 50 of them
+    // cover the ground within a ball.
     constexpr double coarsest = 0.25;
     std::vector<ElementId> open = tree.leaves();
     while (!open.empty()) {

@@ -8,13 +8,14 @@
 
 namespace exitance {
 
-/// The surroundings of small bodies outdoors: balls of twice the radius of each body. On a ground that is far larger,
-/// an error of the light beside a building hardly counts among all surfaces, although it is there that people look at
-/// it. These surroundings are therefore judged as a room of their own (`LightRooms`).
+/// The surroundings of bodies outdoors: balls of twice the radius of each body. On a ground that is far larger, an
+/// error of the light beside a building hardly counts among all surfaces, although it is there that people look at it.
+/// These surroundings are therefore judged as a room of their own (`LightRooms`).
 class BodySurroundings {
   public:
-    /// Finds the bodies of a scene with a sky whose surfaces are mostly large faces, such as a ground. There are none
-    /// if the surroundings of all bodies together are no small part of the scene. O(n log n) in faces.
+    /// Finds the bodies of a scene with a sky that consists mostly of large bodies, such as a ground. Considers the 64
+    /// largest of the small bodies, without those inside the surroundings of larger ones. Empty if their surroundings
+    /// together are a large part of the scene. O(n log n) in faces.
     explicit BodySurroundings(const Stage& stage);
 
     bool are_empty() const { return balls_.empty(); }
@@ -28,7 +29,7 @@ class BodySurroundings {
         std::vector<std::size_t> room_of;
         std::size_t rooms = 0;
     };
-    /// Divides every room below the sky in two, if the surroundings are at most a tenth of it: the surroundings and the
+    /// Divides every room below the sky in two, if the surroundings are at most a quarter of it: these and the
     /// bodies become a room of their own. `room_of`: room of every leaf.
     Division divide(std::span<const std::size_t> room_of, std::size_t rooms, const CoarseElements& in) const;
 

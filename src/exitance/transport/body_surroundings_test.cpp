@@ -60,7 +60,7 @@ TEST(BodySurroundings, OfAHouseOnALargeGroundAreARoom) {
 }
 
 TEST(BodySurroundings, AreNoRoomIfTheyAreALargePartOfTheScene) {
-    const Scene scene = house(60, as_written);
+    const Scene scene = house(40, as_written);
     EXPECT_EQ(rooms_of(Stage(scene)).count(), 0u);
     EXPECT_TRUE(BodySurroundings(Stage(scene)).are_empty());
 }

@@ -13,7 +13,7 @@ class LightPortals {
     explicit LightPortals(std::vector<std::vector<PortalCell>> by_room) : by_room_(std::move(by_room)) {}
     std::span<const PortalCell> of_room(std::size_t room) const { return by_room_[room]; }
     bool empty() const;
-    /// The openings by rooms with other numbers: those of room k are the ones of room before[k].
+    /// Returns a copy for rooms with new numbers: room k has the openings that room before[k] has here.
     std::shared_ptr<const LightPortals> renumbered(std::span<const std::size_t> before) const {
         std::vector<std::vector<PortalCell>> by_room;
         for (const std::size_t room : before) by_room.push_back(by_room_[room]);

@@ -47,7 +47,7 @@ class LightRooms {
 
     /// Openings between rooms at which rays from the darker room are aimed; null if there are none.
     const LightPortals* portals() const { return portals_.get(); }
-    /// BodySurroundings of bodies that are a room of their own; null if there are none.
+    /// Surroundings of bodies that are a room of their own; null if there are none.
     const BodySurroundings* surroundings() const { return surroundings_.get(); }
 
   private:

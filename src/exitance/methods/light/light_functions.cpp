@@ -177,7 +177,7 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 
 bool may_keep_flux(const Stage& stage, const GlobalLight& light) {
     if (light.kept.empty()) return true;
-    constexpr double noise = 0.01;  // derived from kept_light's noise: some 10^5 rays know 2% to much less
+    constexpr double noise = 0.01;  // derived from 10^5 rays, whose standard error is far below this
     const std::vector<double> sent = sent_power(stage.scene, light);
     double all = 0, kept = 0;
     for (std::size_t i = 0; i < sent.size(); ++i) all += sent[i], kept += light.kept[i] * sent[i];
@@ -189,7 +189,7 @@ LostLight find_lost_light(const Stage& stage, const GlobalLight& light, std::uin
     if (std::all_of(light.kept.begin(), light.kept.end(), [](double share) { return share == 1; })) return {};
     std::vector<double> power = sent_power(stage.scene, light);
     // Leaves that are dark to the method may have some delivered light.
-    // Any value gives the same mean: derived from rays, of which these leaves shall get some.
+    // Share of the mean radiosity. Derived from the need for some rays; the mean result is the same with any value.
     constexpr double dark = 0.01;
     const std::vector<double> area = leaf_areas(light.tree, light.numbering);
     const double mean_radiosity =

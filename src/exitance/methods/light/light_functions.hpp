@@ -96,9 +96,9 @@ void raise_dark_rooms(std::span<double> light);
 /// to it. Empty if there is only one room.
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
 
-/// Mean reflected radiosity of every room, W/m^2, of delivered light; see DeliveredLight for the arguments. In a dim
-/// room that sees a bright large ground, the elements of the method are too coarse for it: they are off by a third
-/// where the ground is 3 km wide. Empty if there is only one room.
+/// Mean reflected radiosity of every room, W/m^2, of delivered light; see DeliveredLight for the arguments. It is more
+/// accurate than light_by_room(): in a dim room beside a bright ground, the method's elements may be off by a third.
+/// Empty if there is only one room.
 std::vector<double> delivered_by_room(const Stage& stage, const ElementFunction& indirect,
                                       const DirectProjection& direct, const Spectrum& direct_weight);
 

@@ -118,7 +118,9 @@ std::vector<OptionRow> rows_of_light() {
         {.name = "--importance",
          .value = importance(),
          .does = "Points (.csv or .pts, as for probe) at which the light must be accurate; links are refined for them",
-         .when = "Use it if only a few places of a large scene are of interest",
+         .when =
+             "Use it if only a few places of a large scene are of interest, together with --error, which then holds "
+             "at these points; without --error no error is required",
          .group = group::light,
          .support = links_of_hierarchies(),
          .one_process = "*"},

@@ -147,7 +147,8 @@ void StandardSolver::attempt() {
     if (next_.parts.empty()) found.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
     for (const ElementFunction& f : found.parts) share_on_node(std::span(f.values));
     const NextLight& gathered_on = next_.parts.empty() ? found : next_;
-    steps_.sent = gathers() && keeps_flux() ? arriving_power(stage_.scene, lost_light(), gathered_on.parts) : Spectrum();
+    steps_.sent =
+        gathers() && keeps_flux() ? arriving_power(stage_.scene, lost_light(), gathered_on.parts) : Spectrum();
     ReadNextLight b(gathered_on, stage_.scene.regions().size());
     if (gathers() && !sums_) bright_ = find_bright_places(stage_, direct_.tree, b.whole()), b.aim_at(bright_);
     if (b.stands_alone() && !sums_) found = {};

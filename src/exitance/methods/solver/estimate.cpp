@@ -11,6 +11,7 @@
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/methods/solver/place_of_room.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -33,7 +34,7 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, lost_light(), solution_.direct_share);
     const Spectrum c = solution_.direct_share;
     const Spectrum direct_weight = light_->holds_direct() ? Spectrum() : Spectrum(1.0) - c;
-    if (gathers() && stage_.rooms.count() > 0) {
+    if (form_of(options_) == Form::standard && gathers() && stage_.rooms.count() > 0) {
         options.delivered_in = delivered_by_room(stage_, solution_.indirect, direct_, direct_weight);
         rooms_.correct_light(options.delivered_in, light_->mean_reflected(stage_.area), stage_);
     }

@@ -12,8 +12,8 @@ void RoomDemand::set_light(const Stage& stage, const GlobalLight& light) {
 
 void RoomDemand::correct_light(const std::vector<double>& delivered, double mean_light, const Stage& stage) {
     if (light_in_.empty()) return;
-    light_in_ = delivered;
-    for (double& light : light_in_) light /= mean_light;
+    for (std::size_t room = 0; room < delivered.size(); ++room)
+        if (delivered[room] > 0) light_in_[room] = delivered[room] / mean_light;
     raise_dark_rooms(light_in_);
     allowed_in_ = allowed_by_room(stage, light_in_, calibrated::whole_beyond_rooms);
 }
