@@ -1,7 +1,11 @@
 #include "exitance/transport/body_surroundings.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/scene/bodies.hpp"
 #include "exitance/transport/ray_rows.hpp"
@@ -24,6 +28,33 @@ double radius_around(const Point& centre, std::span<const Point> corners, double
     return radius;
 }
 
+/// For every body, the share of its light that reaches the sky, by a few rays from some of its pieces.
+std::vector<double> shares_to_sky(const Stage& stage, const SceneBodies& bodies) {
+    constexpr std::size_t pieces_of_body = 64, rays = 4;
+    std::vector<std::vector<std::size_t>> of_body(bodies.all.size());
+    for (std::size_t k = 0; k < stage.pieces.size(); ++k)
+        of_body[bodies.of(stage.scene, stage.pieces[k].region)].push_back(k);
+    std::vector<double> out(of_body.size());
+    parallel_for(out.size(), 1, [&](std::size_t b) {
+        const ScrambledSobol points(b);
+        double all = 0, to_sky = 0;  // m^2
+        const std::size_t stride = (of_body[b].size() + pieces_of_body - 1) / pieces_of_body;
+        std::uint32_t k = 0;
+        for (std::size_t i = 0; i < of_body[b].size(); i += stride) {
+            const Piece& piece = stage.pieces[of_body[b][i]];
+            const Frame frame(stage.scene.regions()[piece.region].plane.n);
+            std::array<Vec3, rays> directions;
+            std::array<RayHit, rays> hits;
+            for (Vec3& w : directions) w = cosine_direction(frame, points(k, 0), points(k, 1)), ++k;
+            stage.tracer.nearest(directions, piece.patch.centre(), piece.region, hits);
+            for (const RayHit& hit : hits)
+                all += piece.patch.area(), to_sky += hit.surface.is_none() ? piece.patch.area() : 0;
+        }
+        out[b] = all > 0 ? to_sky / all : 0;
+    });
+    return out;
+}
+
 }  // namespace
 
 BodySurroundings::BodySurroundings(const Stage& stage) {
@@ -35,19 +66,23 @@ BodySurroundings::BodySurroundings(const Stage& stage) {
         double& r = radius[bodies.body[s]];
         r = radius_around(bodies.all[bodies.body[s]].centre, scene.outline(s), r);
     }
+    // Derived from a house of which half of the faces are inside: its outer walls see half of the sky, and furniture
+    // sees a few percent of it through windows.
+    constexpr double min_share_to_sky = 0.1;
+    const std::vector<double> to_sky = shares_to_sky(stage, bodies);
     double of_ground = 0, all = 0;  // m^2
     std::vector<Ball> found;
     for (std::size_t b = 0; b < radius.size(); ++b) {
         const bool is_ground = radius[b] > small_body * scene.size();
         all += bodies.all[b].area, of_ground += is_ground ? bodies.all[b].area : 0;
-        if (!is_ground) found.push_back({bodies.all[b].centre, 2 * radius[b]});
+        if (!is_ground && to_sky[b] >= min_share_to_sky) found.push_back({bodies.all[b].centre, 2 * radius[b]});
     }
     if (2 * of_ground < all) return;
     std::stable_sort(found.begin(), found.end(), [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
     double around = 0;  // area of a ground within the balls, m^2
     for (const Ball& ball : found) {
         if (balls_.size() == max_bodies) break;
-        if (contain(ball.centre)) continue;  // such as furniture in a house
+        if (contain(ball.centre)) continue;  // such as a bench beside a house
         balls_.push_back(ball), around += pi * ball.radius * ball.radius;
     }
     if (around > max_share * all) balls_.clear();

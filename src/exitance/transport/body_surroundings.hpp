@@ -13,9 +13,9 @@ namespace exitance {
 /// These surroundings are therefore judged as a room of their own (`LightRooms`).
 class BodySurroundings {
   public:
-    /// Finds the bodies of a scene with a sky that consists mostly of large bodies, such as a ground. Considers the 64
-    /// largest of the small bodies, without those inside the surroundings of larger ones. Empty if their surroundings
-    /// together are a large part of the scene. O(n log n) in faces.
+    /// Finds the bodies that see the sky, if the scene consists mostly of large bodies, such as a ground. Considers the
+    /// 64 largest of the small bodies, without those inside the surroundings of larger ones. Empty if their
+    /// surroundings together are a large part of the scene. O(n log n) in faces.
     explicit BodySurroundings(const Stage& stage);
 
     bool are_empty() const { return balls_.empty(); }

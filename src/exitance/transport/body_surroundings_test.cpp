@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "exitance/scene/sky/sky_model.hpp"
 #include "exitance/transport/light_rooms.hpp"
 #include "support/motion.hpp"
+#include "support/test_scenes.hpp"
 
 namespace exitance {
 namespace {
@@ -32,6 +35,21 @@ Scene house(double ground, const Motion& motion, bool with_sky = true) {
     add({{-x, y, 0}, {-x, -y, 0}, {-x, -y, z}, {-x, y, z}}, 1);
     if (with_sky) d.distant.domes.push_back({uniform_sky(), Spectrum(100.0)});
     return std::move(*make_scene(std::move(d)).scene);
+}
+
+SceneDescription description_of(const std::vector<test::Face>& faces) {
+    SceneDescription d;
+    d.groups = {"default"};
+    d.materials = {{"grey", Spectrum(0.3), {}}};
+    for (const test::Face& face : faces) {
+        SceneDescription::Face f;
+        for (const Point& p : face.corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        d.faces.push_back(f);
+    }
+    return d;
 }
 
 /// Another scale, turned about the vertical, and moved.
@@ -63,6 +81,28 @@ TEST(BodySurroundings, AreNoRoomIfTheyAreALargePartOfTheScene) {
     const Scene scene = house(40, as_written);
     EXPECT_EQ(rooms_of(Stage(scene)).count(), 0u);
     EXPECT_TRUE(BodySurroundings(Stage(scene)).are_empty());
+}
+
+TEST(BodySurroundings, ThingsInsideAHouseHaveNone) {
+    // a closed hall of 60 x 60 x 40 m with a small box in it, whose outer faces see the sky
+    std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {60, 60, 40});
+    for (test::Face face : test::closed_box({-0.2, -0.2, -0.2}, {60.4, 60.4, 40.4})) {
+        std::reverse(face.corners.begin(), face.corners.end());
+        faces.push_back(face);
+    }
+    const std::size_t hall = faces.size();
+    for (test::Face face : test::closed_box({57, 30, 1}, {2, 2, 2})) {
+        std::reverse(face.corners.begin(), face.corners.end());
+        faces.push_back(face);
+    }
+    for (const double height : {1.0, 50.0}) {  // in the hall, and above its roof
+        for (std::size_t i = hall; i < faces.size(); ++i)
+            for (Point& p : faces[i].corners) p.z += height - 1;
+        SceneDescription d = description_of(faces);
+        d.distant.domes.push_back({uniform_sky(), Spectrum(100.0)});
+        const Scene scene = std::move(*make_scene(std::move(d)).scene);
+        EXPECT_EQ(BodySurroundings(Stage(scene)).are_empty(), height < 40) << height;
+    }
 }
 
 TEST(BodySurroundings, AreNoRoomWithoutASky) {
