@@ -68,6 +68,17 @@ GlareThreshold read_threshold(const std::string& word) {
     return out;
 }
 
+void add_heading(CLI::App& app, ReportHeading& heading) {
+    const auto add_text = [&](const char* name, std::string& text, const char* help) {
+        app.add_option(name, text, help)->type_name("TEXT");
+    };
+    add_text("--title", heading.title, "Title of the page. Default: 'Light in', and the scene's file");
+    add_text("--project", heading.project, "Project, for the first page");
+    add_text("--client", heading.client, "Client, for the first page");
+    add_text("--author", heading.author, "Author, for the first page");
+    add_text("--date", heading.date, "Date, for the first page");
+}
+
 }  // namespace
 
 void declare(CLI::App& app, GlareArguments& arguments) {
@@ -139,14 +150,7 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     app.add_option("--tasks", arguments.tasks_file, "Further tasks (TOML), which replace known ones of the same name")
         ->type_name("FILE");
     app.add_flag("--list-tasks", arguments.lists_tasks, "Print the known tasks with their requirements, and end");
-    const auto add_text = [&](const char* name, std::string& text, const char* help) {
-        app.add_option(name, text, help)->type_name("TEXT");
-    };
-    add_text("--title", arguments.heading.title, "Title of the page. Default: 'Light in', and the scene's file");
-    add_text("--project", arguments.heading.project, "Project, for the first page");
-    add_text("--client", arguments.heading.client, "Client, for the first page");
-    add_text("--author", arguments.heading.author, "Author, for the first page");
-    add_text("--date", arguments.heading.date, "Date, for the first page");
+    add_heading(app, arguments.heading);
     app.add_option("--pdf", arguments.pdf, "Also write the page as PDF (.pdf); Chromium must be installed")
         ->type_name("FILE");
 }

@@ -27,6 +27,14 @@ double Solver::judged_error() const {
     return std::max(certificate_.largest(), margin(certificate_.points) * certificate_.upper_limit());
 }
 
+void Solver::set_light_of_rooms(CertificateOptions& options, const Spectrum& direct_weight) {
+    if (form_of(options_) == Form::standard && gathers() && stage_.rooms.count() > 0) {
+        options.delivered_in = delivered_by_room(stage_, solution_.indirect, direct_, direct_weight);
+        rooms_.correct_light(options.delivered_in, light_->mean_reflected(stage_.area), stage_);
+    }
+    options.light_in = rooms_.light_in(), options.allowed_in = rooms_.allowed_in();
+}
+
 void Solver::certify(CertificateOptions options, std::optional<double> demand,
                      std::span<const ElementGather> gathered) {
     options.direct_in_elements = light_->holds_direct();
@@ -34,11 +42,7 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, lost_light(), solution_.direct_share);
     const Spectrum c = solution_.direct_share;
     const Spectrum direct_weight = light_->holds_direct() ? Spectrum() : Spectrum(1.0) - c;
-    if (form_of(options_) == Form::standard && gathers() && stage_.rooms.count() > 0) {
-        options.delivered_in = delivered_by_room(stage_, solution_.indirect, direct_, direct_weight);
-        rooms_.correct_light(options.delivered_in, light_->mean_reflected(stage_.area), stage_);
-    }
-    options.light_in = rooms_.light_in(), options.allowed_in = rooms_.allowed_in();
+    set_light_of_rooms(options, direct_weight);
     options.bounces = options_.bounces;
     options.bodies = &bodies();
     options.stop = &stop_, options.progress = &progress_;
@@ -84,13 +88,17 @@ void Solver::certify(CertificateOptions options, std::optional<double> demand,
         certifier.measure_each_body(certificate_);
         certifier.measure_p99(certificate_);
     }
+    record_errors(certifier, noise);
+    if (certificate_.points == 0 && !stop_.requested()) record_darkness();
+    progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
+}
+
+void Solver::record_errors(const Certifier& certifier, double noise) {
     record_certificate(certificate_, *light_, solution_.indirect, statistics());
     statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
     for (RoomError& room : statistics().rooms)
         room.error = statistics().rooms.size() == 1 ? certificate_.worst_room : std::hypot(room.error, noise);
     statistics().bodies = certifier.bodies();
-    if (certificate_.points == 0 && !stop_.requested()) record_darkness();
-    progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
 }
 
 void Solver::record_darkness() {

@@ -122,6 +122,10 @@ class Solver {
 
   private:
     void record_plan();
+    /// Replaces the light of the rooms by the delivered light, and sets it and the allowed errors in `options`.
+    void set_light_of_rooms(CertificateOptions& options, const Spectrum& direct_weight);
+    /// Records the certificate. `noise`: relative error of direct light by rays, which the rooms' errors get as well.
+    void record_errors(const Certifier& certifier, double noise);
     /// Archives everything on which the remaining steps depend. `phase`: the state within the present step, or empty.
     template <class Archive>
     void archive_state(Archive& a, std::string& phase);
