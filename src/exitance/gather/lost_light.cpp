@@ -36,7 +36,7 @@ Rays leaving(const Stage& stage, const ElementTree& tree, const LeafNumbering& n
     const double total = std::accumulate(power.begin(), power.end(), 0.0);
     const ScrambledSobol points(key);
     RandomStream random(key, Stream::shooting);
-    double place = random.uniform();  // of the next ray, in units of the power per ray
+    double place = random.uniform();  // sent power before the next ray, in units of the power per ray
     Rays out;
     double before = 0;
     for (std::size_t i = 0; i < power.size(); ++i) {
@@ -58,7 +58,7 @@ Rays leaving(const Stage& stage, const ElementTree& tree, const LeafNumbering& n
 
 }  // namespace
 
-/// Regions whose backs take enough light that rays from these backs find where it comes from.
+/// Regions whose backs take so much light that it is measured by rays from these backs.
 class LostLight::Backs {
   public:
     /// Counts the hits of `rays` on backs.
@@ -70,7 +70,8 @@ class LostLight::Backs {
     }
 
     bool takes(RegionId region) const {
-        constexpr std::uint32_t min_hits = 8;  // the light of other backs is known from the rays that meet them
+        // The light that other backs take is measured by the leaving rays that hit them.
+        constexpr std::uint32_t min_hits = 8;
         return hits_[region] >= min_hits;
     }
     std::span<const RegionId> taking() const { return taking_; }
@@ -113,8 +114,9 @@ void LostLight::add_rays_from(const Stage& stage, const Backs& backs, std::uint6
     for (const Piece& piece : stage.pieces)
         if (backs.takes(piece.region)) patches[index[piece.region]].push_back(&piece.patch);
 
-    // Rays that start on a region leave by its front: these start in free space, a little behind the region.
-    constexpr double behind = 0x1p-19;  // derived from the lift of rays off faces, of which it is twice the height
+    // Rays that start on a region leave by its front. These start in free space, behind the region by this share of the
+    // scene's size. Derived from the height by which the tracer lifts rays off faces: twice that.
+    constexpr double behind = 0x1p-19;
     Rays rays;
     for (std::size_t r = 0; r < patches.size(); ++r) {
         const RegionId region = backs.taking()[r];

@@ -19,8 +19,8 @@ constexpr double small_body = 0.125;
 /// Surroundings with at most this share of a room's area are a room of their own. Derived from sums of squares: the
 /// error of a part with a larger share is at most twice that of the room.
 constexpr double max_share = 0.25;
-/// Maximum number of bodies with surroundings, the largest ones. Derived from the elements around them: some thousands
-/// in a coarse mesh.
+/// Maximum number of bodies with surroundings. Derived from the number of elements around them: some thousands in a
+/// coarse mesh.
 constexpr std::size_t max_bodies = 64;
 
 double radius_around(const Point& centre, std::span<const Point> corners, double radius) {
@@ -28,7 +28,7 @@ double radius_around(const Point& centre, std::span<const Point> corners, double
     return radius;
 }
 
-/// For every body, the share of its light that reaches the sky, by a few rays from some of its pieces.
+/// Returns, for every body, the share of its light that reaches the sky: four rays from each of at most 64 pieces.
 std::vector<double> shares_to_sky(const Stage& stage, const SceneBodies& bodies) {
     constexpr std::size_t pieces_of_body = 64, rays = 4;
     std::vector<std::vector<std::size_t>> of_body(bodies.all.size());
@@ -66,8 +66,8 @@ BodySurroundings::BodySurroundings(const Stage& stage) {
         double& r = radius[bodies.body[s]];
         r = radius_around(bodies.all[bodies.body[s]].centre, scene.outline(s), r);
     }
-    // Derived from a house of which half of the faces are inside: its outer walls see half of the sky, and furniture
-    // sees a few percent of it through windows.
+    // Share of a body's light that reaches the sky, from which it is outdoors. Derived from two cases: a house whose
+    // inner walls belong to it sends a quarter of its light to the sky, and furniture behind windows a few percent.
     constexpr double min_share_to_sky = 0.1;
     const std::vector<double> to_sky = shares_to_sky(stage, bodies);
     double of_ground = 0, all = 0;  // m^2

@@ -20,7 +20,7 @@ class BodySurroundings;
 /// levels of rooms differ by orders of magnitude, so that errors are judged room by room; otherwise the light outdoors
 /// would hide any error in a cellar. The rooms of a building, as users count them, are `FloorRooms`. A room with less
 /// than a twentieth of the area (not counting ground or sky) is merged with a neighbour. Outdoors, bodies and the
-/// ground around them are a room of their own if the rest of the ground is far larger (`BodySurroundings`).
+/// ground around them are a room of their own if the rest is at least three times as large (`BodySurroundings`).
 class LightRooms {
   public:
     /// Treats the whole scene as one room.
@@ -59,7 +59,8 @@ class LightRooms {
     friend LightRooms find_light_rooms(const Stage&, std::uint64_t, const StopRequest&);
     std::vector<double> areas_;
     double mean_area_ = 0;
-    /// Locates leaves of a coarse mesh over all pieces; null if the scene is one room that loses no light.
+    /// Locates leaves of a coarse mesh over all pieces; null if the scene is one room that loses no
+    /// light, without bodies that have surroundings.
     std::shared_ptr<const ElementLocator> locator_;
     Field<ElementId, std::uint16_t> room_of_;  ///< Room of each leaf of that mesh.
     std::vector<double> piece_importance_;
