@@ -16,18 +16,19 @@ struct ErrorShare {
     /// bound.
     static constexpr std::size_t max_even_count = 4000, min_count = 1000;
 
-    /// True if there are more than `max_even_count` elements and most of them are whole polygons.
-    static bool is_crowd(std::size_t elements, std::size_t polygons) {
-        return elements > max_even_count && 2 * polygons > elements;
+    /// True if there are more than `max_even_count` elements and most of them are whole polygons. `multiplicity`:
+    /// factor on the limit (`LightRooms::multiplicity`).
+    static bool is_crowd(std::size_t elements, std::size_t polygons, double multiplicity = 1) {
+        return static_cast<double>(elements) > multiplicity * max_even_count && 2 * polygons > elements;
     }
 
     /// Area below which a single element of a crowd hardly contributes to the error. It is `far_from_mean` times the
-    /// mean area, but no more than 1 / `max_even_count` of the area of all elements, `area`, and at least the mean
-    /// area.
-    static double small_area(double area, std::size_t elements) {
+    /// mean area, but no more than 1 / (`multiplicity` `max_even_count`) of the area of all elements, `area`, and at
+    /// least the mean area.
+    static double small_area(double area, std::size_t elements, double multiplicity = 1) {
         constexpr double far_from_mean = 8;  // derived from meshes of even triangles: all are below it
         const double mean = area / static_cast<double>(elements);
-        return std::clamp(far_from_mean * mean, mean, std::max(mean, area / static_cast<double>(max_even_count)));
+        return std::clamp(far_from_mean * mean, mean, std::max(mean, area / (multiplicity * max_even_count)));
     }
 };
 

@@ -21,7 +21,7 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     : stage_(stage), seed_(seed), tree_(stage.make_elements(mesh)) {
     const std::vector<ElementId> leaves = tree_.leaves();
     noise_area_ = mean_area_ = stage.area / static_cast<double>(leaves.size());
-    is_crowd_ = ErrorShare::is_crowd(leaves.size(), stage.pieces.size());
+    is_crowd_ = stage.is_crowd(leaves.size());
     if (is_crowd_) {
         std::vector<double> areas;
         for (ElementId e : leaves)

@@ -201,7 +201,7 @@ std::vector<ElementId> LocalPass::gather_together(const std::vector<ElementId>& 
                                                   const LocalPassDemand& demand, LocalPassReport& report,
                                                   Progress& progress, const StopRequest& stop) {
     std::vector<ElementId> small, rest;
-    const double small_area = ErrorShare::small_area(stage_.area, active.size());
+    const double small_area = stage_.small_area(active.size());
     for (const ElementId e : active) (is_minor(e, small_area, b) ? small : rest).push_back(e);
     if (small.size() < elements_together) return active;
     sort_by_place(tree_, small);

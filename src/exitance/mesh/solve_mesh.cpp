@@ -167,7 +167,8 @@ double rise_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& pla
 
 }  // namespace
 
-std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces) {
+std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces,
+                                                 double multiplicity) {
     std::vector<Box> boxes(scene.surfaces().size());
     for (SurfaceId s : scene.surfaces().ids())
         for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
@@ -198,7 +199,8 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
     double area = 0;
     for (const Piece& piece : pieces) area += piece.patch.area();
     // Small pieces among thousands are narrower than the strips along concave borders, and stay whole.
-    const double small = pieces.size() > ErrorShare::max_even_count ? ErrorShare::small_area(area, pieces.size()) : 0;
+    const bool is_crowd = ErrorShare::is_crowd(pieces.size(), pieces.size(), multiplicity);
+    const double small = is_crowd ? ErrorShare::small_area(area, pieces.size(), multiplicity) : 0;
     std::vector<ConcaveBorders> out(pieces.size());
     parallel_for(pieces.size(), 64, [&](std::size_t k) {
         if (pieces[k].patch.area() < small) return;

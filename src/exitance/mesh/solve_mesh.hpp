@@ -26,8 +26,17 @@ struct MeshSize {
 /// their normals); 1 from a right angle on, 0 if no surface rises. Light exchange is singular at such borders.
 using ConcaveBorders = std::vector<double>;
 
-/// Finds the concave borders of each piece. O(n log n).
-std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces);
+/// Finds the concave borders of each piece, but not those of the small pieces of a crowd, which is larger by
+/// `multiplicity` than in a single room (`ErrorShare`). O(n log n).
+std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces,
+                                                 double multiplicity = 1);
+
+/// Pieces to be meshed, which light reaches, and the factor on the number of elements because they bound many rooms
+/// (`LightRooms::multiplicity`).
+struct LitSpaces {
+    std::vector<Piece> pieces;
+    double multiplicity = 1;
+};
 
 /// Splits every piece until `size` is met. Strips along concave edges stay long: parallelograms are split across one
 /// direction at a time, triangles along lines parallel to the edge, into cells. Triangles without such an edge are

@@ -12,7 +12,7 @@ double fewer_rays_in_crowd(const Stage& stage, const ElementTree& tree, const Le
     // quarter is lit.
     constexpr double even = 4;
     const std::size_t leaves = numbering.leaves.size();
-    if (!ErrorShare::is_crowd(leaves, stage.pieces.size())) return 1;
+    if (!stage.is_crowd(leaves)) return 1;
     double area = 0, sum = 0, squares = 0;
     for (std::size_t i = 0; i < leaves; ++i) {
         const double own = tree.area(numbering.leaves[i]), b = mean(reflected[i]);

@@ -90,7 +90,7 @@ class Projector {
         mean_area_ = stage_.area / static_cast<double>(active.size());
         many_ = are_many(active.size());
         // Noise is neglected on small elements, and on large ones it need not decrease with the number of small ones.
-        is_crowd_ = stage_.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage_.pieces.size());
+        is_crowd_ = stage_.rooms.count() == 0 && stage_.is_crowd(active.size());
         // In scenes of many elements, or if exact light is expensive, the limit on errors is needed before the first
         // fits.
         if (active.size() > few_elements || has_open_sky())
@@ -207,8 +207,8 @@ class Projector {
     void fit_all(std::vector<ElementId> active, int depth) {
         if (depth == 0 && is_crowd_ && !many_ && !stop_.requested() && may_fit_together(stage_))
             active = fit_together(
-                stage_, out_.tree, active, ErrorShare::small_area(stage_.area, active.size()),
-                [&](ElementId e) { return noise_on(e); }, out_.fit, stop_);
+                stage_, out_.tree, active, stage_.small_area(active.size()), [&](ElementId e) { return noise_on(e); },
+                out_.fit, stop_);
         found_.assign(active.size(), {});
         constexpr std::size_t grain = 8;
         LoopProgress progress({options_.progress, before_fits(depth), fraction_before_round(depth + 1),

@@ -112,9 +112,10 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
         while (rays.min < max_room_rays && 2 * rays.min * numbering.leaves.size() <= rays_outdoors) rays.min *= 2;
     const RayRows rows(stage, {tree, numbering, *locator}, {rays, seed}, &stop);
     const std::vector<std::uint32_t> escaped = rows.escaped();
-    const std::vector<LeafNumbers> rooms = find_room_leaves({stage, tree, numbering, rows, escaped}, seed, stop);
+    const auto [rooms, spaces] = find_room_leaves({stage, tree, numbering, rows, escaped}, seed, stop);
     LightRooms out;
     if (stop.requested()) return out;  // rows that were not cast have no information
+    out.spaces_ = spaces;
     const std::vector<double> kept = rows.kept();
     const bool loses = std::any_of(kept.begin(), kept.end(), [](double share) { return share < 1; });
     if (rooms.size() < 2 && !loses && surroundings->are_empty()) return out;

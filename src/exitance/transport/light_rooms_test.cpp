@@ -46,6 +46,19 @@ TEST(LightRooms, AClosedRoomATubeAndAnOpenSceneAreOneRoom) {
         EXPECT_EQ(rooms_of(built_scene(name)).count(), 0u) << name;
 }
 
+/// Closed rooms of a building are counted as spaces even if each is too small to be judged on its own.
+TEST(LightRooms, CountsTheSpacesOfManyRooms) {
+    std::vector<std::pair<Point, Point>> many;
+    for (int k = 0; k < 48; ++k)
+        many.push_back({{5.0 * (k % 8), 6.0 * (k / 8), 0}, {5.0 * (k % 8) + 4, 6.0 * (k / 8) + 5, 3}});
+    EXPECT_NEAR(rooms_of(boxes(many)).spaces(), 48, 0.5);
+    EXPECT_NEAR(rooms_of(boxes(many)).multiplicity(), 48.0 / 20, 0.05);
+    many.push_back({{0, -1000, 0}, {1000, -100, 3}});  // a hall that is far larger than all other rooms
+    EXPECT_NEAR(rooms_of(boxes(many)).spaces(), 1, 0.1);
+    for (const char* name : {"furnace", "tube", "chair", "cornell", "complex"})
+        EXPECT_LT(rooms_of(built_scene(name)).spaces(), 1.5) << name;
+}
+
 TEST(LightRooms, RoomsConnectedByADoorAreTwo) {
     const Scene scene = built_scene("office", {{"nx", "2"}, {"ny", "1"}});
     const LightRooms rooms = rooms_of(scene);

@@ -15,10 +15,6 @@ namespace {
 
 // The numbers below define what counts as a room of its own. They were chosen by trial.
 
-/// A part of the scene is a room if it has at least this share of all area, or of the area that is not outdoors. With
-/// double, a small room joins the large one around it, which takes four times as many rays; with half nothing changes:
-/// measured by `exitance solve keyhole.obj --error 0.02`.
-constexpr double min_share = 0.05;
 /// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
 /// Half of it and twice it give the same rooms, measured by `exitance solve office.obj --error 0.02`.
 constexpr double min_detail = 0.001;
@@ -100,8 +96,7 @@ class RoomFinder {
         }
     }
 
-    /// Returns the leaves of every room, in descending order of area. Each leaf belongs to one room.
-    std::vector<LeafNumbers> find(const StopRequest& stop) {
+    RoomLeaves find(const StopRequest& stop) {
         std::vector<Part> open = joined_by_light();
         while (!open.empty() && parts_.size() + open.size() < max_rooms && !stop.requested()) {
             Part part = std::move(open.back());
@@ -113,14 +108,14 @@ class RoomFinder {
                 parts_.push_back(std::move(part));
         }
         for (Part& part : open) parts_.push_back(std::move(part));
+        RoomLeaves out{.rooms = {}, .spaces = count_spaces()};
         sort();
         while (const Part* part = smallest_indoors()) {
             if (part == &parts_.front() || counts(*part)) break;
             join(static_cast<std::size_t>(part - parts_.data()));
         }
         if (parts_.size() > 1) place_blind_leaves();
-        std::vector<LeafNumbers> out;
-        for (Part& part : parts_) out.push_back(std::move(part.leaves));
+        for (Part& part : parts_) out.rooms.push_back(std::move(part.leaves));
         return out;
     }
 
@@ -233,10 +228,10 @@ class RoomFinder {
     /// True if a part is large enough to be a room of its own.
     bool counts(const Part& part) const {
         if (!part.may_be_room()) return false;
-        if (part.area >= min_share * total_) return true;
+        if (part.area >= min_room_share * total_) return true;
         if (static_cast<double>(part.leaves.size()) < min_detail * static_cast<double>(flow_.area.size())) return false;
         if (!has_own_walls(part)) return false;
-        if (has_sky_ && part.area >= min_share * indoor_area_) return true;
+        if (has_sky_ && part.area >= min_room_share * indoor_area_) return true;
         Box inner = inner_;
         inner.add(part.box.lo), inner.add(part.box.hi);
         return whole_.diagonal() >= far_larger * inner.diagonal();
@@ -258,6 +253,7 @@ class RoomFinder {
         return true;
     }
 
+    double count_spaces() const;
     std::vector<std::uint8_t> blind_leaves() const;
     void place_blind_leaves();
     const Part* smallest_indoors() const;
@@ -274,6 +270,13 @@ class RoomFinder {
     double indoor_area_ = 0;            ///< Area of the elements that see little of the sky, m^2.
     std::uint16_t fresh_ = 1;           ///< Number of the next part.
 };
+
+/// Returns `LightRooms::spaces` of the parts.
+double RoomFinder::count_spaces() const {
+    double sum = 0, squares = 0;  // m^2, m^4
+    for (const Part& part : parts_) sum += part.area, squares += part.area * part.area;
+    return squares > 0 ? sum * sum / squares : 1;
+}
 
 /// For every leaf, 1 if none of its rays hits a front or reaches a sky.
 std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
@@ -350,18 +353,18 @@ void RoomFinder::join(std::size_t number) {
 
 }  // namespace
 
-std::vector<LeafNumbers> find_room_leaves(const CoarseElements& in, std::uint64_t seed, const StopRequest& stop) {
+RoomLeaves find_room_leaves(const CoarseElements& in, std::uint64_t seed, const StopRequest& stop) {
     const auto find = [&] { return RoomFinder(in, seed).find(stop); };
     if (processes() == 1) return find();
     // Each step depends on the one before, so the first process does all and sends the result.
-    std::vector<LeafNumbers> rooms;
+    RoomLeaves found;
     ArchiveWriter writer;
-    if (is_first_process()) rooms = find(), writer(rooms);
+    if (is_first_process()) found = find(), writer(found.rooms, found.spaces);
     const std::string bytes = as_first(writer.take(), "rooms");
     ArchiveReader reader(bytes);
-    reader(rooms);
+    reader(found.rooms, found.spaces);
     EXI_CHECK(reader.good() && reader.left() == 0);
-    return rooms;
+    return found;
 }
 
 }  // namespace exitance

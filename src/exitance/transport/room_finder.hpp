@@ -21,10 +21,14 @@ struct CoarseElements {
     std::vector<std::uint32_t> escaped;  ///< Rays of each leaf that hit nothing (`RayRows::escaped`).
 };
 
+struct RoomLeaves {
+    std::vector<LeafNumbers> rooms;  ///< The leaves of every room, in descending order of area.
+    double spaces = 1;               ///< See `LightRooms::spaces`.
+};
+
 /// Divides the leaves of coarse elements into the rooms of a scene (`LightRooms`): cuts the scene at openings
 /// (`find_opening`) until no part can be cut into rooms, merges parts that are too small with a neighbour, and assigns
-/// leaves that see no front. Returns the leaves of every room, in descending order of area. Each leaf belongs to one
-/// room. Collective.
-std::vector<LeafNumbers> find_room_leaves(const CoarseElements& in, std::uint64_t seed, const StopRequest& stop);
+/// leaves that see no front. Each leaf belongs to one room. Collective.
+RoomLeaves find_room_leaves(const CoarseElements& in, std::uint64_t seed, const StopRequest& stop);
 
 }  // namespace exitance

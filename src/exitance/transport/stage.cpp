@@ -47,14 +47,27 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
     std::vector<ElementId> leaves = tree.leaves();
     std::erase_if(leaves, [&](ElementId e) { return is_unlit(tree.region(e)); });
     // Among thousands of leaves or slats that intersect each other none matters on its own: small ones stay whole.
-    if (ErrorShare::is_crowd(leaves.size(), pieces.size())) {
-        const double small = ErrorShare::small_area(area, leaves.size());
+    if (is_crowd(leaves.size())) {
+        const double small = small_area(leaves.size());
         std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < small; });
     }
     cut_along_contacts(tree, leaves, contacts, stop);
     if (rooms.surroundings()) rooms.surroundings()->refine(tree);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
     return tree;
+}
+
+bool Stage::is_crowd(std::size_t elements) const {
+    return ErrorShare::is_crowd(elements, pieces.size(), rooms.multiplicity());
+}
+
+double Stage::small_area(std::size_t elements) const {
+    return ErrorShare::small_area(area, elements, rooms.multiplicity());
+}
+
+void Stage::set_rooms(LightRooms found) {
+    rooms = std::move(found);
+    if (rooms.multiplicity() > 1) concave = find_concave_borders(scene, pieces, rooms.multiplicity());
 }
 
 double Stage::expected_reflections() const {

@@ -60,6 +60,17 @@ struct Stage {
         return out;
     }
 
+    /// Pieces on other than unlit sides, with the enclosed spaces that `rooms` found.
+    LitSpaces lit_spaces() const { return {lit_pieces(), rooms.multiplicity()}; }
+
+    /// True if most of this many elements are whole small polygons (`ErrorShare`), and not those of many rooms.
+    bool is_crowd(std::size_t elements) const;
+    /// `ErrorShare::small_area` of this many elements, m^2.
+    double small_area(std::size_t elements) const;
+
+    /// Sets the rooms. Many rooms of few polygons each are no crowd: their concave borders are found, too.
+    void set_rooms(LightRooms found);
+
     /// Meshes all pieces: graded towards concave edges, split along contacts with other polygons, and finer in rooms
     /// that are smaller than others. On a stop request the mesh is valid but not everywhere split.
     ElementTree make_elements(MeshSize size, const StopRequest* stop = nullptr) const;

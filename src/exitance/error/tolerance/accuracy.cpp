@@ -17,9 +17,10 @@ void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
 
 }  // namespace
 
-Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
+Knobs knobs_for_error(double error, const LitSpaces& lit, const SolveOptions& options) {
     namespace c = calibrated;
-    const auto count = [&](double n) { return static_cast<std::size_t>(n / error); };
+    const std::vector<Piece>& pieces = lit.pieces;
+    const auto count = [&](double n) { return static_cast<std::size_t>(lit.multiplicity * n / error); };
     const auto round_up = [](double n) { return static_cast<int>(std::ceil(n)); };
     // A strip of width w along a concave edge, where the light varies like w^0.7, contributes w^1.2 to the error
     // (derived from [Atkinson00]).
@@ -61,17 +62,17 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
 namespace {
 
 /// The cost of a sum grows with the number of source elements, not of receivers.
-double edge_for_sums(const std::vector<Piece>& pieces, double error) {
-    return edge_for_elements(pieces, static_cast<std::size_t>(4 / error));
+double edge_for_sums(const LitSpaces& lit, double error) {
+    return edge_for_elements(lit.pieces, static_cast<std::size_t>(lit.multiplicity * 4 / error));
 }
 
 /// Settings for errors at which every point must be accurate, not only the mean square.
-Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces) {
+Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const LitSpaces& lit) {
     namespace c = calibrated;
     Knobs out = knobs;
     // The gather smooths the method's solution, and its own elements are split as needed.
     out.solve_mesh.edge *= 2, out.solve_rays.average *= 0.5;
-    out.gather_mesh.edge = 2 * edge_for_sums(pieces, error);
+    out.gather_mesh.edge = 2 * edge_for_sums(lit, error);
     // Light must be accurate at edges, too: that takes two strips more than the mean square needs.
     out.gather_mesh.grading_levels += 2;
     // The strips are split into squares at open ends, and get enough rays that their noise is not visible from the
@@ -87,16 +88,15 @@ Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const std::vector<Pi
 
 /// The summed light is refined, so that the method may be inaccurate. But the certificate follows late reflections on
 /// the method's elements and underestimates them if the elements are too few.
-Knobs knobs_for_refined_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces,
-                             const SolveOptions& options) {
+Knobs knobs_for_refined_sums(const Knobs& knobs, double error, const LitSpaces& lit, const SolveOptions& options) {
     namespace c = calibrated;
     Knobs out = knobs;
     const double coarser = std::max(error, std::min(c::refined_coarsening * error, c::coarsest_refined));
-    const Knobs coarse = knobs_for_error(coarser, pieces, options);
+    const Knobs coarse = knobs_for_error(coarser, lit, options);
     const auto fewer = [](int levels, int less) { return std::max(0, levels - less); };
     out.solve_mesh = {std::sqrt(2.0) * coarse.solve_mesh.edge, fewer(coarse.gather_mesh.grading_levels, 2)};
     out.solve_rays = coarse.solve_rays, out.solve_rays.average = c::refined_row_rays;
-    out.gather_mesh = {std::sqrt(2.0) * edge_for_sums(pieces, coarser), fewer(knobs.gather_mesh.grading_levels, 1)};
+    out.gather_mesh = {std::sqrt(2.0) * edge_for_sums(lit, coarser), fewer(knobs.gather_mesh.grading_levels, 1)};
     out.gather_tolerance = ErrorBudget(coarser).gather_misfit(false);
     out.gather_element_share = c::refined_element_share * coarser;
     return out;
@@ -122,7 +122,7 @@ Knobs between(const Knobs& a, const Knobs& b, double t) {
 
 }  // namespace
 
-Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
+Knobs knobs_for_sums(const Knobs& knobs, double error, const LitSpaces& lit, const SolveOptions& options) {
     namespace c = calibrated;
     Knobs straight = knobs;
     // Cost per gather point does not depend on the element, so that more straight elements cost less than the points
@@ -131,9 +131,9 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
     Knobs out = straight;
     const double t = std::clamp(
         std::log(c::refined_sums_from / error) / std::log(c::refined_sums_from / c::fine_sums_below), 0.0, 1.0);
-    if (t < 1) out = knobs_for_refined_sums(straight, error, pieces, options);
+    if (t < 1) out = knobs_for_refined_sums(straight, error, lit, options);
     if (t > 0) {
-        const Knobs fine = knobs_for_fine_sums(straight, error, pieces);
+        const Knobs fine = knobs_for_fine_sums(straight, error, lit);
         out = t < 1 ? between(out, fine, t) : fine;
     }
     // Correcting sums (`corrected_sums`) iterates the equation for all reflections, so it cannot be used

@@ -29,15 +29,15 @@ struct Knobs {
     bool corrects_sums = false;            ///< Correct the summed light, and sum once more (`corrected_sums`).
 };
 
-/// Returns the settings for a relative error and the pieces of a scene. Rules of thumb, verified afterwards by the
+/// Returns the settings for a relative error and the lit pieces of a scene. Rules of thumb, verified afterwards by the
 /// certificate (R: the error): elements ~ 1/R, rays per point ~ R^(-4/3) (scrambled Sobol points), strips along concave
-/// edges until their share of the error is R.
-Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options);
+/// edges until their share of the error is R. The number of elements is multiplied by that of `lit`.
+Knobs knobs_for_error(double error, const LitSpaces& lit, const SolveOptions& options);
 
 /// Returns the settings for light that is summed over elements (`ElementGather`) instead of sampled by rays. Sums have
 /// no noise, so that coarser meshes are sufficient, and still coarser ones if the summed light is refined. Below an
 /// error of 1%, where the light must be accurate at every point, edges and their ends are graded further.
-Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options);
+Knobs knobs_for_sums(const Knobs& knobs, double error, const LitSpaces& lit, const SolveOptions& options);
 
 /// The parts of an error, RMS relative to the mean reflected light: the elements of the method, and the noise and
 /// interpolation of the local pass.

@@ -18,13 +18,13 @@ const Knobs knobs = [] {
 
 /// Checks that settings change little when the error does, and only towards more work as the error decreases.
 void expect_continuous(bool sums) {
-    std::vector<Piece> pieces;
+    LitSpaces lit;
     for (int i = 0; i < 12; ++i)
-        pieces.push_back(
+        lit.pieces.push_back(
             {RegionId(0), Patch{{0, 0, 0}, {1 + 0.37 * i, 0, 0}, {0, 3 - 0.17 * i, 0}, Patch::Shape::parallelogram}});
     const auto of = [&](double error) {
-        const Knobs plain = knobs_for_error(error, pieces, {});
-        return sums ? knobs_for_sums(plain, error, pieces, {}) : plain;
+        const Knobs plain = knobs_for_error(error, lit, {});
+        return sums ? knobs_for_sums(plain, error, lit, {}) : plain;
     };
     constexpr double step = 0.99;
     Knobs last = of(0.1);

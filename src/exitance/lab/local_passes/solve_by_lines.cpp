@@ -15,7 +15,7 @@ namespace {
 GlobalLight coarse_light(const Stage& stage, const ElementFunction& delivered, const SolveOptions& options) {
     GlobalLight out;
     out.tree =
-        stage.make_elements(knobs_for_error(calibrated::interrupted_error, stage.lit_pieces(), options).solve_mesh);
+        stage.make_elements(knobs_for_error(calibrated::interrupted_error, stage.lit_spaces(), options).solve_mesh);
     out.numbering = LeafNumbering(out.tree);
     const ElementLocator locator(delivered.tree, stage.scene.regions().size());
     for (const ElementId e : out.numbering.leaves) {

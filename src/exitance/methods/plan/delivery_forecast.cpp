@@ -72,7 +72,7 @@ double links_work(const Stage& stage, const Counts& counts) {
 /// Returns the standard deviation of a gather with 64 rays of the first reflection of direct light, relative to its
 /// mean. It measures how uneven the light is, as seen from the surfaces.
 double pilot_spread(const Stage& stage, const SolveOptions& options) {
-    const Knobs coarse = knobs_for_error(calibrated::hurried_error, stage.lit_pieces(), options);
+    const Knobs coarse = knobs_for_error(calibrated::hurried_error, stage.lit_spaces(), options);
     const StopRequest never;
     const DirectProjection direct =
         project_direct_light(stage, {.mesh = coarse.solve_mesh, .tolerance = coarse.direct_tolerance}, never);
@@ -125,7 +125,7 @@ DeliveryForecast forecast_delivery(const Stage& stage, const SolveOptions& optio
     DeliveryForecast out;
     if (!ElementGather::suits(stage)) return out;
     const double error = options.error_target();
-    const std::vector<Piece> lit = stage.lit_pieces();
+    const LitSpaces lit = stage.lit_spaces();
     const Knobs knobs = knobs_for_error(error, lit, options), for_sums = knobs_for_sums(knobs, error, lit, options);
     const Counts by_rays = count_elements(stage, knobs), by_sums = count_elements(stage, for_sums);
     const double gather = gather_by_sums(stage, by_sums, for_sums);

@@ -39,11 +39,11 @@ void fit_links(Plan& plan, const Stage& stage) {
 void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) {
     // Published forms solve on all sides, and use rooms only if errors are judged by room.
     if (form_of(options) == Form::standard) stage.set_unlit_sides(find_unlit_sides(stage, options.seed, stop));
-    if (has_estimate(options)) stage.rooms = find_light_rooms(stage, options.seed, stop);
+    if (has_estimate(options)) stage.set_rooms(find_light_rooms(stage, options.seed, stop));
 }
 
 Knobs first_knobs(const Plan& plan, const Stage& stage, double error) {
-    const std::vector<Piece> lit = stage.lit_pieces();
+    const LitSpaces lit = stage.lit_spaces();
     Knobs knobs = knobs_for_error(error, lit, plan.options);
     knobs.links_deliver = plan.knobs.links_deliver;
     return plan.sums ? knobs_for_sums(knobs, error, lit, plan.options) : knobs;

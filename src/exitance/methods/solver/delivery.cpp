@@ -50,7 +50,7 @@ bool StandardSolver::light_is_dropped_at_stop() const {
 
 void StandardSolver::project_coarsely() {
     const Knobs fine =
-        std::exchange(knobs_, knobs_for_error(calibrated::interrupted_error, stage_.lit_pieces(), options_));
+        std::exchange(knobs_, knobs_for_error(calibrated::interrupted_error, stage_.lit_spaces(), options_));
     project_direct();
     knobs_ = fine;
 }

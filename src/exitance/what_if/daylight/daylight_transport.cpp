@@ -145,7 +145,7 @@ DaylightTransport::DaylightTransport(Scene scene, const SkyPatches& patches, con
       finer_(finer),
       groups_(std::move(groups)) {
     for (std::size_t k = 0; k < daylight_replicates; ++k) seeds_[k] = hash(seed, k);
-    stage_.rooms = find_light_rooms(stage_, seed, StopRequest());
+    stage_.set_rooms(find_light_rooms(stage_, seed, StopRequest()));
 }
 
 void DaylightTransport::make_elements(double count) {

@@ -41,7 +41,7 @@ Result<LightGroups> keep_light_groups(Solution& solution, const SolveOptions& op
 
 EnergyBalance energy_after_change(const Solution& solution) {
     Stage stage(solution.scene);
-    stage.rooms = find_light_rooms(stage, 1, StopRequest());
+    stage.set_rooms(find_light_rooms(stage, 1, StopRequest()));
     return energy_of_interpolant(solution, stage);
 }
 

@@ -59,7 +59,7 @@ class GroupSolver {
         : solution_(solution),
           stage_(solution.scene),
           options_(options),
-          knobs_(knobs_for_error(options.error_target(), stage_.lit_pieces(), options)),
+          knobs_(knobs_for_error(options.error_target(), stage_.lit_spaces(), options)),
           progress_(progress),
           stop_(stop) {}
 
