@@ -16,6 +16,9 @@ constexpr double max_step = 0.3;            ///< Metres; derived from steps of s
 constexpr double step_share = 0.15;         ///< Share of the height, derived from such steps in rooms of 2 m.
 constexpr double nearly_all = 0.9;          ///< Share of the outline; derived from pipes and posts at machines.
 constexpr double solid_share = 0.25;        ///< Share of the outline, derived from racks between three walls.
+constexpr double large_share = 0.25;        ///< Share of the lower room's area, derived from split levels.
+constexpr double wide = 3;                  ///< Metres; derived from containers, 2.5 m wide, and presses.
+constexpr double wide_share = 1.5;          ///< Share of the rise, derived from containers in models out of scale.
 constexpr double standing_height = 1.9;     ///< Metres; derived from the height of people.
 constexpr double standing_share = 0.6;      ///< Share of the rise, derived from racks of two shelves.
 constexpr std::size_t max_edges = 2000;     ///< Derived from a tenth of a second of ray casting.
@@ -28,13 +31,12 @@ const Vec3 down{0, 0, -1};
 /// Examines one part of a floor.
 class Bounds {
   public:
-    Bounds(const Scene& scene, const RayTracer& tracer, const FloorCells& storey, std::uint32_t part, double rise,
-           const InLowerRoom& in_lower_room)
+    Bounds(const Scene& scene, const RayTracer& tracer, const FloorCells& storey, std::uint32_t part,
+           const FindLowerRoom& find_lower_room)
         : scene_(scene),
           tracer_(tracer),
           storey_(storey),
           part_(part),
-          rise_(rise),
           height_(storey.parts()[part].height),
           step_(std::min(max_step, step_share * height_)) {
         std::vector<FloorCells::Edge> edges = storey.edges(part);
@@ -43,15 +45,27 @@ class Bounds {
         depth_.resize(edges_.size()), kind_.resize(edges_.size());
         parallel_for(edges_.size(), 16, [&](std::size_t i) { kind_[i] = kind_of(i); });
         // The rooms below are found on one thread: they cast rays of their own.
-        for (std::size_t i = 0; i < edges_.size(); ++i)
-            if (kind_[i] == Kind::falls && !in_lower_room(edges_[i].outer + depth_[i] * down)) kind_[i] = Kind::bounded;
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            if (kind_[i] != Kind::falls) continue;
+            const std::optional<LowerRoom> room = find_lower_room(edges_[i].outer + depth_[i] * down);
+            if (!room) {
+                kind_[i] = Kind::bounded;
+                continue;
+            }
+            rise_ = std::min(rise_, edges_[i].inner.z - room->level);
+            lower_area_ = std::max(lower_area_, room->area);
+        }
     }
 
     bool is_top_of_body() const {
         const auto falling = static_cast<std::size_t>(std::count(kind_.begin(), kind_.end(), Kind::falls));
         const double share = static_cast<double>(falling) / static_cast<double>(kind_.size());
         if (share < solid_share || has_stairs()) return false;
-        return share >= nearly_all || !has_space_beneath();
+        if (share >= nearly_all) return true;
+        const FloorCells::Part& part = storey_.parts()[part_];
+        const bool is_large =
+            part.area > large_share * lower_area_ || part.breadth > std::min(wide, wide_share * rise_);
+        return !is_large && !has_space_beneath();
     }
 
   private:
@@ -179,7 +193,7 @@ class Bounds {
         bool is_inside = true;
         for (int layer = 0; layer < max_layers; ++layer) {
             const RayHit next = hit(p, down);
-            if (next.surface.is_none() || top.z - p.z > rise_) return Beneath::solid;
+            if (next.surface.is_none() || top.z - p.z + next.distance > rise_ + 2 * apart) return Beneath::solid;
             const bool is_high = next.distance >= space();
             if (next.front && is_high) return is_inside ? Beneath::sheet_or_solid : Beneath::space;
             is_inside = next.front;
@@ -211,7 +225,9 @@ class Bounds {
     const RayTracer& tracer_;
     const FloorCells& storey_;
     std::uint32_t part_;
-    double rise_, height_, step_;  ///< Metres.
+    double height_, step_;    ///< Metres.
+    double rise_ = HUGE_VAL;  ///< Height above the floor of the nearest lower room, metres.
+    double lower_area_ = 0;   ///< Area of the largest lower room, m^2.
     std::vector<FloorCells::Edge> edges_;
     std::vector<double> depth_;  ///< Depth of the first face below each edge's outer point, metres.
     std::vector<Kind> kind_;
@@ -220,8 +236,8 @@ class Bounds {
 }  // namespace
 
 bool is_top_of_body(const Scene& scene, const RayTracer& tracer, const FloorCells& storey, std::uint32_t part,
-                    double rise, const InLowerRoom& in_lower_room) {
-    return Bounds(scene, tracer, storey, part, rise, in_lower_room).is_top_of_body();
+                    const FindLowerRoom& find_lower_room) {
+    return Bounds(scene, tracer, storey, part, find_lower_room).is_top_of_body();
 }
 
 }  // namespace exitance

@@ -143,12 +143,16 @@ void FloorRooms::leave_out_furniture(const Scene& scene, const RayTracer& tracer
 bool FloorRooms::is_body_in(const std::vector<FloorRoom>& lower, const FloorRoom& room, const Scene& scene,
                             const RayTracer& tracer) const {
     const double own = level(room);
-    const auto in_lower_room = [&](const Point& p) {
-        return std::any_of(lower.begin(), lower.end(), [&](const FloorRoom& r) {
-            return level(r) < own - one_plane && level(r) <= p.z + one_plane && is_above(p, r);
-        });
+    // The highest room that contains a place counts: floors of several storeys are above each other.
+    const auto find_lower_room = [&](const Point& p) {
+        std::optional<LowerRoom> out;
+        for (const FloorRoom& r : lower)
+            if (level(r) < own - one_plane && level(r) <= p.z + one_plane && (!out || level(r) >= out->level) &&
+                is_above(p, r))
+                out = {level(r), r.area};
+        return out;
     };
-    return is_top_of_body(scene, tracer, storeys_[room.storey], room.part, own - level(lower.front()), in_lower_room);
+    return is_top_of_body(scene, tracer, storeys_[room.storey], room.part, find_lower_room);
 }
 
 /// Names a room by the group of its floor's faces, if nearly all of them are in one group and no other room's are.

@@ -32,6 +32,13 @@ class Builder {
         d_.groups.push_back(group);
         d_.faces.push_back(f);
     }
+    /// Four walls of a box, pointing inwards.
+    void sides(Vec3 lo, Vec3 hi, const std::string& group) {
+        face({{lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z}, {lo.x, lo.y, lo.z}}, group);
+        face({{hi.x, lo.y, hi.z}, {hi.x, hi.y, hi.z}, {hi.x, hi.y, lo.z}, {hi.x, lo.y, lo.z}}, group);
+        face({{hi.x, hi.y, hi.z}, {lo.x, hi.y, hi.z}, {lo.x, hi.y, lo.z}, {hi.x, hi.y, lo.z}}, group);
+        face({{lo.x, hi.y, hi.z}, {lo.x, lo.y, hi.z}, {lo.x, lo.y, lo.z}, {lo.x, hi.y, lo.z}}, group);
+    }
     /// Four walls of a box and its top, pointing outwards; or `inwards`, with a floor.
     void box(Vec3 lo, Vec3 hi, const std::string& group, bool inwards = false) {
         const auto side = [&](std::vector<Vec3> p, const std::string& name) {
@@ -242,6 +249,33 @@ TEST(FloorRooms, InAnOpenModelATerraceWithParapetsIsARoomAndARoofIsNone) {
                                                                    {{29.7, 0.3, 6}, {30, 7.7, 7}}})
         b.box(lo, hi, "parapet");
     EXPECT_EQ(floor_heights(b), (FloorHeights{0, 6}));
+}
+
+TEST(FloorRooms, LevelsAroundOrBesideLowerFloorsAreRooms) {
+    // A deck around a basin of 2 m depth, and a hall of two levels without railing or stairs.
+    Builder pool(30, {1000, -400, 3}, 1);
+    pool.box({0, 0, 2}, {35, 20, 8}, "walls", true);
+    pool.face({{0, 0, 2}, {35, 0, 2}, {35, 4, 2}, {0, 4, 2}}, "deck"),
+        pool.face({{0, 16, 2}, {35, 16, 2}, {35, 20, 2}, {0, 20, 2}}, "deck");
+    pool.face({{0, 4, 2}, {5, 4, 2}, {5, 16, 2}, {0, 16, 2}}, "deck"),
+        pool.face({{30, 4, 2}, {35, 4, 2}, {35, 16, 2}, {30, 16, 2}}, "deck");
+    pool.sides({5, 4, 0}, {30, 16, 2}, "basin"), pool.floor({5, 4, 0}, {30, 16, 0}, "basin");
+    EXPECT_EQ(floor_heights(pool), (FloorHeights{2, 0}));
+    Builder split(30, {1000, -400, 3}, 1);
+    split.sides({0, 0, 0}, {10, 10, 6}, "walls"), split.floor({0, 0, 0}, {10, 10, 0}, "floor");
+    split.face({{0, 0, 6}, {0, 10, 6}, {10, 10, 6}, {10, 0, 6}}, "ceiling");
+    split.box({0, 6, 0}, {10, 10, 2.2}, "upper level");
+    EXPECT_EQ(floor_heights(split), (FloorHeights{0, 2.2}));
+}
+
+TEST(FloorRooms, RacksOnAnUpperStoreyAreNoRooms) {
+    Builder b = hall();
+    b.box({0, 0, -4}, {40, 30, -0.3}, "lower hall", true), b.floor({0, 0, -4}, {40, 30, -4}, "lower floor");
+    for (const double y : {0.0, 12.0}) {  // at a wall, and free
+        b.box({10, y, 0.001}, {20, y + 1.2, 2.6}, "rack");
+        b.face({{10, y, 0.001}, {10, y + 1.2, 0.001}, {20, y + 1.2, 0.001}, {20, y, 0.001}}, "rack");
+    }
+    EXPECT_EQ(floor_heights(b), (FloorHeights{-4, 0}));
 }
 
 TEST(FloorRooms, OfficesInAHallAreRoomsAndTheirRoofsAreNot) {
