@@ -141,6 +141,35 @@ void FloorCells::find_parts() {
         part.height = free[k][upper], part.has_ceiling = 2 * open[k] <= part.cells;
         part.is_inside_body = 2 * inside[k] > part.cells;
     }
+    // Side of the largest square of one part's cells that ends at each cell, in cells.
+    std::vector<std::uint32_t> side(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (part_[i] == none) continue;
+        const bool is_first = i % columns_ == 0 || i < columns_;
+        const auto same = [&](std::size_t j) { return part_[j] == part_[i] ? side[j] : 0; };
+        side[i] = 1 + (is_first ? 0 : std::min({same(i - 1), same(i - columns_), same(i - columns_ - 1)}));
+        double& breadth = parts_[part_[i]].breadth;
+        breadth = std::max(breadth, side[i] * width_);
+    }
+}
+
+std::vector<FloorCells::Edge> FloorCells::edges(std::uint32_t part) const {
+    const std::array<Vec3, 4> ways{width_ * u_, -width_ * u_, width_ * v_, -width_ * v_};
+    std::vector<Edge> out;
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (part_[i] != part) continue;
+        const std::size_t column = i % columns_;
+        const std::array<bool, 4> is_last{column + 1 == columns_, column == 0, i + columns_ >= size(), i < columns_};
+        const std::array<std::size_t, 4> next{i + 1, i - 1, i + columns_, i - columns_};
+        for (std::size_t k = 0; k < ways.size(); ++k) {
+            if (!is_last[k] && part_[next[k]] == part) continue;
+            const Point p = centre(i), q = p + ways[k];
+            const bool is_linked =
+                is_last[k] || part_[next[k]] == none ? !is_wall_between(p, q, height_[i]) : are_linked(i, next[k]);
+            out.push_back({p, q, !is_linked});
+        }
+    }
+    return out;
 }
 
 std::size_t FloorCells::cell_of(std::uint32_t part, const Point& p) const {

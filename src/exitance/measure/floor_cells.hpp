@@ -18,12 +18,19 @@ class FloorCells {
     /// A part of the floor that walls or the floor's outline enclose.
     struct Part {
         std::size_t cells = 0;
-        double area = 0;  ///< m^2
+        double area = 0;     ///< m^2
+        double breadth = 0;  ///< Side of the largest square of its cells, metres.
         /// Free height above the floor that a quarter of the cells exceed, metres. Below the open sky it reaches to
         /// `top`.
         double height = 0;
         bool is_inside_body = false;  ///< True if the back of a face is above more than half of the cells.
         bool has_ceiling = false;     ///< True if something is above at least half of the cells.
+    };
+
+    /// A place on the outline of a part: the centre of a cell at its edge, and that of the neighbouring cell outside.
+    struct Edge {
+        Point inner, outer;
+        bool has_wall = false;
     };
 
     /// `top`: highest point of the scene, metres. The tracer must outlive the object. Casts about ten rays per cell;
@@ -39,6 +46,9 @@ class FloorCells {
 
     /// True if a point of the floor's plane is in a part, by at least `border` metres from its walls and outline.
     bool holds(std::uint32_t part, const Point& p, double border) const;
+    /// All edges of a part's cells, in the order of cells.
+    std::vector<Edge> edges(std::uint32_t part) const;
+    double cell_size() const { return width_; }  ///< Metres.
     /// Bounding rectangle of a part along the sides of the floor's rectangle, exact to 1e-6 of the scene's size.
     MeasuringPlane rectangle(std::uint32_t part) const;
 

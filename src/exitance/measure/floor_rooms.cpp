@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "exitance/measure/floor_bounds.hpp"
+
 namespace exitance {
 namespace {
 
@@ -14,6 +16,9 @@ constexpr double min_area = 1;           ///< m^2
 constexpr double min_floor_share = 0.1;  ///< Share of the largest floor's area; derived from models out of scale.
 constexpr double person = 1.9;           ///< Metres; derived from the height of people: lower spaces are not rooms.
 constexpr double cupboard_share = 0.75;  ///< Part of a room's height; derived from cupboards: below it is furniture.
+constexpr double min_breadth = 0.6;      ///< Metres; derived from treads of stairs, shelves and window sills.
+constexpr double min_breadth_share =     ///< Share of the root of the largest area, derived from models out of scale.
+    0.12;
 constexpr std::size_t max_floors = 256;  ///< Derived from a few seconds of ray casting.
 constexpr std::size_t max_rooms = 64;
 
@@ -59,21 +64,23 @@ const std::string& group_at(const Scene& scene, const FloorShape& shape, const P
 FloorRooms::FloorRooms(const Scene& scene, const RayTracer& tracer) {
     const double top = scene.box().hi.z;
     for (Floor& floor : large_floors(scene)) storeys_.emplace_back(std::move(floor), top, tracer);
-    find_rooms(scene);
+    find_rooms(scene, tracer);
 }
 
-void FloorRooms::find_rooms(const Scene& scene) {
+void FloorRooms::find_rooms(const Scene& scene, const RayTracer& tracer) {
     double largest = 0;
     for (const FloorCells& storey : storeys_)
         for (const FloorCells::Part& part : storey.parts()) largest = std::max(largest, part.area);
     const double least = std::min(min_area, min_floor_share * largest);
+    const double narrowest = std::min(min_breadth, min_breadth_share * std::sqrt(largest));
     for (std::size_t s = 0; s < storeys_.size(); ++s)
         for (std::uint32_t k = 0; k < storeys_[s].parts().size(); ++k) {
             const FloorCells::Part& part = storeys_[s].parts()[k];
-            if (part.area >= least) rooms_.push_back({"", part.area, part.height, {}, s, k});
+            if (part.area >= least && part.breadth >= narrowest)
+                rooms_.push_back({"", part.area, part.height, {}, s, k});
         }
     leave_out_roofs();
-    leave_out_furniture();
+    leave_out_furniture(scene, tracer);
     std::stable_sort(rooms_.begin(), rooms_.end(),
                      [](const FloorRoom& a, const FloorRoom& b) { return a.area > b.area; });
     if (rooms_.size() > max_rooms) rooms_.resize(max_rooms);
@@ -97,9 +104,19 @@ void FloorRooms::leave_out_roofs() {
     if (any) std::erase_if(rooms_, [&](const FloorRoom& r) { return !has_ceiling(r) || r.height < least; });
 }
 
-/// Removes faces that are mostly above the floor of a lower room, by less than the height of a person.
-void FloorRooms::leave_out_furniture() {
-    const auto level = [&](const FloorRoom& r) { return storeys_[r.storey].floor().shapes[0].loops[0][0].z; };
+bool FloorRooms::is_above(const Point& p, const FloorRoom& room) const {
+    const Floor& floor = storeys_[room.storey].floor();
+    const Point below{p.x, p.y, level(room)};
+    return std::any_of(floor.shapes.begin(), floor.shapes.end(), [&](const FloorShape& shape) {
+        // Holes in a floor are the places of bodies that stand on it.
+        return std::any_of(shape.loops.begin(), shape.loops.end(),
+                           [&](const std::vector<Point>& loop) { return contains(loop, shape.plane.n, below); });
+    });
+}
+
+/// Removes faces that are mostly above the floor of a lower room, by less than the height of a person, and the tops of
+/// bodies in lower rooms.
+void FloorRooms::leave_out_furniture(const Scene& scene, const RayTracer& tracer) {
     std::stable_sort(rooms_.begin(), rooms_.end(),
                      [&](const FloorRoom& a, const FloorRoom& b) { return level(a) < level(b); });
     std::vector<FloorRoom> kept;
@@ -116,9 +133,26 @@ void FloorRooms::leave_out_furniture() {
                        storeys_[lower.storey].holds(lower.part, below, 0);
             });
         }
-        if (2 * above <= storey.parts()[room.part].cells) kept.push_back(room);
+        if (2 * above > storey.parts()[room.part].cells) continue;
+        if (kept.empty() || !is_body_in(kept, room, scene, tracer)) kept.push_back(room);
     }
     rooms_ = std::move(kept);
+}
+
+/// True if a room is the top of a body that stands in one of some lower rooms or hangs in it.
+bool FloorRooms::is_body_in(const std::vector<FloorRoom>& lower, const FloorRoom& room, const Scene& scene,
+                            const RayTracer& tracer) const {
+    const double own = level(room);
+    // The highest room that contains a place counts: floors of several storeys are above each other.
+    const auto find_lower_room = [&](const Point& p) {
+        std::optional<LowerRoom> out;
+        for (const FloorRoom& r : lower)
+            if (level(r) < own - one_plane && level(r) <= p.z + one_plane && (!out || level(r) >= out->level) &&
+                is_above(p, r))
+                out = {level(r), r.area};
+        return out;
+    };
+    return is_top_of_body(scene, tracer, storeys_[room.storey], room.part, find_lower_room);
 }
 
 /// Names a room by the group of its floor's faces, if nearly all of them are in one group and no other room's are.

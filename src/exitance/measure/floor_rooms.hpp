@@ -16,8 +16,9 @@ struct FloorRoom {
 
 /// The rooms of a building, found from its floors and walls; those of the largest floor come first. Error estimates use
 /// other rooms, which are the parts of a scene between which little light passes (`LightRooms`). A floor is a group of
-/// touching faces that point up, of at least 1 m^2 (in small models: a tenth of the largest). Three kinds of faces are
-/// no floors: those of spaces too low to stand in; furniture, which is less than the height of a person above a floor;
+/// touching faces that point up, of at least 1 m^2 (in small models: a tenth of the largest). Five kinds of faces are
+/// no floors: those of spaces too low to stand in; those too narrow for people, such as treads; furniture, which is
+/// less than the height of a person above a floor; the tops of higher bodies, which nothing bounds (`is_top_of_body`);
 /// and, if some floors have ceilings, those without, which are roofs and the ground outside.
 class FloorRooms {
   public:
@@ -38,9 +39,14 @@ class FloorRooms {
     std::size_t at(const Point& p) const;
 
   private:
-    void find_rooms(const Scene& scene);
+    void find_rooms(const Scene& scene, const RayTracer& tracer);
     void leave_out_roofs();
-    void leave_out_furniture();
+    void leave_out_furniture(const Scene& scene, const RayTracer& tracer);
+    bool is_body_in(const std::vector<FloorRoom>& lower, const FloorRoom& room, const Scene& scene,
+                    const RayTracer& tracer) const;
+    /// True if a point is straight above a room's floor, or above a hole in it.
+    bool is_above(const Point& p, const FloorRoom& room) const;
+    double level(const FloorRoom& room) const { return storeys_[room.storey].floor().shapes[0].loops[0][0].z; }
     void name_rooms(const Scene& scene);
 
     std::vector<FloorCells> storeys_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
@@ -26,6 +27,16 @@ constexpr std::size_t max_bodies = 64;
 double radius_around(const Point& centre, std::span<const Point> corners, double radius) {
     for (const Point& corner : corners) radius = std::max(radius, norm(corner - centre));
     return radius;
+}
+
+/// Box about a ball, larger by more than the rounding error of distances.
+Box box_about(const Point& centre, double radius) {
+    constexpr double rounding = 1e-12;  // derived from double precision
+    const double size = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z), radius});
+    const double r = radius + rounding * size;
+    Box box;
+    box.add(centre - Vec3{r, r, r}), box.add(centre + Vec3{r, r, r});
+    return box;
 }
 
 /// Returns, for every body, the share of its light that reaches the sky: four rays from each of at most 64 pieces.
@@ -71,39 +82,55 @@ BodySurroundings::BodySurroundings(const Stage& stage) {
     constexpr double min_share_to_sky = 0.1;
     const std::vector<double> to_sky = shares_to_sky(stage, bodies);
     double of_ground = 0, all = 0;  // m^2
-    std::vector<Ball> found;
+    struct Found {
+        Ball ball;
+        SurfaceId body;
+    };
+    std::vector<Found> found;
     for (std::size_t b = 0; b < radius.size(); ++b) {
         const bool is_ground = radius[b] > small_body * scene.size();
         all += bodies.all[b].area, of_ground += is_ground ? bodies.all[b].area : 0;
-        if (!is_ground && to_sky[b] >= min_share_to_sky) found.push_back({bodies.all[b].centre, 2 * radius[b]});
+        if (!is_ground && to_sky[b] >= min_share_to_sky)
+            found.push_back({{bodies.all[b].centre, 2 * radius[b]}, bodies.all[b].first});
     }
     if (2 * of_ground < all) return;
-    std::stable_sort(found.begin(), found.end(), [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Found& a, const Found& b) { return a.ball.radius > b.ball.radius; });
     double around = 0;  // area of a ground within the balls, m^2
-    for (const Ball& ball : found) {
+    for (const Found& next : found) {
         if (balls_.size() == max_bodies) break;
-        if (contain(ball.centre)) continue;  // such as a bench beside a house
-        balls_.push_back(ball), around += pi * ball.radius * ball.radius;
+        // such as a bench beside a house
+        if (std::any_of(balls_.begin(), balls_.end(), [&](const Ball& b) { return holds(b, next.ball.centre); }))
+            continue;
+        balls_.push_back(next.ball), bodies_.push_back(next.body), around += pi * next.ball.radius * next.ball.radius;
     }
-    if (around > max_share * all) balls_.clear();
+    if (around > max_share * all) balls_.clear(), bodies_.clear();
+    std::vector<Box> boxes;
+    for (const Ball& ball : balls_) boxes.push_back(box_about(ball.centre, ball.radius));
+    tree_ = Bvh(boxes);
+}
+
+bool BodySurroundings::holds(const Ball& ball, const Point& x) {
+    return norm(x - ball.centre) <= ball.radius;
 }
 
 bool BodySurroundings::contain(const Point& x) const {
-    return std::any_of(balls_.begin(), balls_.end(),
-                       [&](const Ball& ball) { return norm(x - ball.centre) <= ball.radius; });
+    return tree_.visit_box(box_about(x, 0), [&](std::uint32_t b) { return holds(balls_[b], x); });
 }
 
-void BodySurroundings::refine(ElementTree& tree) const {
+void BodySurroundings::refine(ElementTree& tree, const StopRequest* stop) const {
     // Largest extent of an element over the radius of the ball. Derived from the number of elements: some 50 of them
     // cover the ground within a ball.
     constexpr double coarsest = 0.25;
+    if (are_empty()) return;
     std::vector<ElementId> open = tree.leaves();
-    while (!open.empty()) {
+    while (!open.empty() && !(stop && stop->requested())) {
         const ElementId e = open.back();
         open.pop_back();
         const Point centre = tree.patch(e).at(tree.centre(e));
         const double extent = radius_around(centre, tree.outline(e), 0);
-        const bool is_coarse = std::any_of(balls_.begin(), balls_.end(), [&](const Ball& ball) {
+        const bool is_coarse = tree_.visit_box(box_about(centre, extent), [&](std::uint32_t b) {
+            const Ball& ball = balls_[b];
             return extent > coarsest * ball.radius && norm(centre - ball.centre) <= ball.radius + extent;
         });
         if (is_coarse)
@@ -128,13 +155,15 @@ BodySurroundings::Division BodySurroundings::divide(std::span<const std::size_t>
         Room& room = sums[room_of[i]];
         room.all += area, room.near += is_near[i] * area, room.to_sky += area * in.escaped[i] / rays;
     }
+    std::vector<std::size_t> near_room(rooms);  // room of the near part of each room; the room itself if undivided
     for (std::size_t r = 0; r < rooms; ++r) {
-        if (sums[r].near == 0 || sums[r].near > max_share * sums[r].all || sums[r].to_sky < outdoors * sums[r].all)
-            continue;
-        for (std::size_t i = 0; i < room_of.size(); ++i)
-            if (room_of[i] == r && is_near[i]) out.room_of[i] = out.rooms;
-        ++out.rooms;
+        const Room& room = sums[r];
+        const bool is_divided =
+            room.near > 0 && room.near <= max_share * room.all && room.to_sky >= outdoors * room.all;
+        near_room[r] = is_divided ? out.rooms++ : r;
     }
+    for (std::size_t i = 0; i < room_of.size(); ++i)
+        if (is_near[i]) out.room_of[i] = near_room[room_of[i]];
     return out;
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/base/bvh.hpp"
 #include "exitance/transport/room_finder.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -19,18 +20,22 @@ class BodySurroundings {
     explicit BodySurroundings(const Stage& stage);
 
     bool are_empty() const { return balls_.empty(); }
+    /// True if a point is in the surroundings of a body. O(log bodies).
     bool contain(const Point& x) const;
+    /// The first face of every body, the largest body first.
+    const std::vector<SurfaceId>& bodies() const { return bodies_; }
 
-    /// Splits elements until they are small beside each body that they surround.
-    void refine(ElementTree& tree) const;
+    /// Splits elements until they are small beside each body that they surround. Ends early if a stop is requested.
+    /// O(log bodies) per element.
+    void refine(ElementTree& tree, const StopRequest* stop) const;
 
-    /// The room of every leaf, and the number of rooms.
+    /// The room of every leaf, and the number of rooms. Rooms of surroundings have the largest numbers.
     struct Division {
         std::vector<std::size_t> room_of;
         std::size_t rooms = 0;
     };
     /// Divides every room below the sky in two, if the surroundings are at most a quarter of it: these and the
-    /// bodies become a room of their own. `room_of`: room of every leaf.
+    /// bodies become a room of their own. `room_of`: room of every leaf. O(log bodies) per leaf.
     Division divide(std::span<const std::size_t> room_of, std::size_t rooms, const CoarseElements& in) const;
 
   private:
@@ -38,7 +43,11 @@ class BodySurroundings {
         Point centre;
         double radius;  ///< Metres; twice that of the body.
     };
+    static bool holds(const Ball& ball, const Point& x);
+
     std::vector<Ball> balls_;
+    std::vector<SurfaceId> bodies_;
+    Bvh tree_;  ///< Boxes of the balls.
 };
 
 }  // namespace exitance

@@ -105,6 +105,42 @@ TEST(BodySurroundings, ThingsInsideAHouseHaveNone) {
     }
 }
 
+TEST(BodySurroundings, OfManyBodiesContainThePointsOfTheirBalls) {
+    // 60 boxes of different sizes on a ground of 20 km
+    std::vector<test::Face> faces{{{{-10000, -10000, 0}, {10000, -10000, 0}, {10000, 10000, 0}, {-10000, 10000, 0}}}};
+    std::vector<Point> centres;
+    std::vector<double> radii;
+    for (int i = 0; i < 60; ++i) {
+        const double size = 4 + i % 7, x = -8000 + 1600 * (i % 10), y = -6000 + 2000 * (i / 10);
+        for (test::Face face : test::closed_box({x, y, 1}, {size, size, size})) {
+            std::reverse(face.corners.begin(), face.corners.end());
+            faces.push_back(face);
+        }
+        centres.push_back({x + 0.5 * size, y + 0.5 * size, 1 + 0.5 * size});
+        radii.push_back(2 * std::sqrt(0.75) * size);
+    }
+    SceneDescription d = description_of(faces);
+    d.distant.domes.push_back({uniform_sky(), Spectrum(100.0)});
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    const Stage stage(scene);
+    const BodySurroundings surroundings(stage);
+    EXPECT_EQ(surroundings.bodies().size(), 60u);
+    for (std::size_t i = 0; i < centres.size(); ++i)
+        for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{0.6, 0.8, 0}, Vec3{0, 0, -1}}) {
+            EXPECT_TRUE(surroundings.contain(centres[i] + (1 - 1e-9) * radii[i] * way)) << i;
+            EXPECT_FALSE(surroundings.contain(centres[i] + (1 + 1e-9) * radii[i] * way)) << i;
+        }
+    // A stop ends the refinement of elements.
+    StopRequest stop;
+    ElementTree stopped = stage.make_elements({20000, 0}, nullptr), refined = stopped;
+    const std::size_t before = stopped.size();
+    stop.interrupt();
+    surroundings.refine(stopped, &stop);
+    EXPECT_EQ(stopped.size(), before);
+    surroundings.refine(refined, nullptr);
+    EXPECT_GT(refined.size(), before);
+}
+
 TEST(BodySurroundings, AreNoRoomWithoutASky) {
     const Scene scene = house(3000, as_written, false);
     EXPECT_TRUE(BodySurroundings(Stage(scene)).are_empty());

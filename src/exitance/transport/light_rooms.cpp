@@ -98,7 +98,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     const std::vector<Piece> pieces = stage.lit_pieces();
     ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
     const auto surroundings = std::make_shared<const BodySurroundings>(stage);
-    surroundings->refine(tree);
+    surroundings->refine(tree, &stop);
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
     const bool has_sky = !stage.scene.distant().domes.empty();
@@ -144,6 +144,9 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     if (divided.rooms > rooms.size()) {
         out.surroundings_ = surroundings;
         out.set(divided.room_of, divided.rooms, tree, numbering);
+        out.is_surroundings_.assign(divided.rooms, 0);
+        for (std::size_t i = 0; i < room_of.size(); ++i)
+            if (divided.room_of[i] >= rooms.size()) out.is_surroundings_[out.room_of_[numbering.leaves[i]]] = 1;
         std::vector<std::size_t> before(divided.rooms);
         for (std::size_t i = 0; i < room_of.size(); ++i) before[out.room_of_[numbering.leaves[i]]] = room_of[i];
         if (out.portals_) out.portals_ = out.portals_->renumbered(before);

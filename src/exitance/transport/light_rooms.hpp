@@ -62,6 +62,8 @@ class LightRooms {
     const LightPortals* portals() const { return portals_.get(); }
     /// Surroundings of bodies that are a room of their own; null if there are none.
     const BodySurroundings* surroundings() const { return surroundings_.get(); }
+    /// True if a room consists of surroundings of bodies.
+    bool is_surroundings(std::size_t room) const { return room < is_surroundings_.size() && is_surroundings_[room]; }
 
   private:
     void set(std::span<const std::size_t> room_of, std::size_t rooms, const ElementTree& tree,
@@ -81,6 +83,7 @@ class LightRooms {
     Field<ElementId, float> lost_, importance_;
     std::shared_ptr<const LightPortals> portals_;
     std::shared_ptr<const BodySurroundings> surroundings_;
+    std::vector<std::uint8_t> is_surroundings_;  ///< Per room; empty if there are no surroundings.
 };
 
 /// Finds the rooms of a scene. Light exchanged between coarse elements becomes even within a room long before it does

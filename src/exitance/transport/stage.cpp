@@ -52,7 +52,7 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
         std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < small; });
     }
     cut_along_contacts(tree, leaves, contacts, stop);
-    if (rooms.surroundings()) rooms.surroundings()->refine(tree);
+    if (rooms.surroundings()) rooms.surroundings()->refine(tree, stop);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
     return tree;
 }

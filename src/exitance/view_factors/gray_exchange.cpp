@@ -180,6 +180,34 @@ Error stopped() {
     return {ErrorCode::limit, "stopped before the heat balance was solved", "", "allow more time"};
 }
 
+/// The error of a heat balance in which surface `sink` and others of `is_too_cold` would be colder than absolute zero:
+/// states the heat that it takes up if these surfaces are at absolute zero.
+Error too_cold(const ExchangeAreas& exchange, const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
+               std::optional<double> surroundings, std::size_t sink, const std::vector<std::uint8_t>& is_too_cold,
+               const StopRequest& stop) {
+    std::vector<ThermalSurface> coldest(surfaces.begin(), surfaces.end());
+    std::vector<double> emitted, heat;
+    for (std::size_t i = 0; i < coldest.size(); ++i) {
+        if (is_too_cold[i]) coldest[i].temperature = 0;
+        emitted.push_back(black(coldest[i].temperature.value_or(0)));
+        heat.push_back(coldest[i].temperature ? 0 : coldest[i].heat);
+    }
+    const GraySystem system(exchange, factors.areas, coldest, !surroundings);
+    const double sky = black(surroundings.value_or(0));
+    const GraySystem::Solution solved = system.solve(emitted, heat, sky, stop);
+    if (solved.is_stopped) return stopped();
+    const double most = std::max(0.0, system.incoming(solved.radiosity)[sink] + system.leak(sink) * sky -
+                                          system.area(sink) * solved.radiosity[sink]);
+    const auto others = std::count(is_too_cold.begin(), is_too_cold.end(), 1) - 1;
+    return wrong(
+        fmt::format("surface {} cannot take up {:g} W: at absolute zero it takes up {:.4g} W{}", sink + 1,
+                    -surfaces[sink].heat, most,
+                    others == 0 ? "" : fmt::format(" ({} more surfaces are too cold, too)", others)),
+        fmt::format("give it a heat of {:.4g} W or more (negative heat is taken up, positive heat is given off), make "
+                    "others hotter, or give its temperature in place of its heat",
+                    0 - most));
+}
+
 /// The heat balance of surfaces between which heat is exchanged; `factors` are the rows on which `exchange` is based.
 Result<GrayExchange> balance(const ExchangeAreas& exchange, const SparseFactors& factors,
                              std::span<const ThermalSurface> surfaces, std::optional<double> surroundings,
@@ -198,6 +226,9 @@ Result<GrayExchange> balance(const ExchangeAreas& exchange, const SparseFactors&
                      .residual = solved.residual,
                      .iterations = solved.iterations};
     const std::vector<double> arriving = system.incoming(out.radiosity);
+    std::vector<std::uint8_t> is_too_cold(surfaces.size());
+    double lowest = 0, highest = 0;  // black-body exitances of surfaces with a given heat, W/m^2
+    std::size_t coldest = 0, hottest = 0;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const double J = out.radiosity[i], e = surfaces[i].emissivity;
         const double Q = system.area(i) * J - arriving[i] - system.leak(i) * sky;
@@ -207,12 +238,21 @@ Result<GrayExchange> balance(const ExchangeAreas& exchange, const SparseFactors&
             out.temperature.push_back(*surfaces[i].temperature);
             continue;
         }
+        // An adiabatic surface can be too cold or too hot only if a surface with heat is.
         const double exitance = J + (system.area(i) > 0 ? (1 - e) / e * Q / system.area(i) : 0);
-        if (exitance < 0)
-            return wrong(fmt::format("surface {} would lose {:g} W at absolute zero", i + 1, Q),
-                         "give it a smaller heat, or a temperature");
-        out.temperature.push_back(std::pow(exitance / stefan_boltzmann, 1 / power_of_temperature));
+        if (exitance < 0 && surfaces[i].heat < 0) {
+            is_too_cold[i] = 1;
+            if (exitance < lowest) lowest = exitance, coldest = i;
+        }
+        if (exitance > highest && surfaces[i].heat > 0) highest = exitance, hottest = i;
+        out.temperature.push_back(std::pow(std::max(0.0, exitance) / stefan_boltzmann, 1 / power_of_temperature));
     }
+    if (lowest < 0) return too_cold(exchange, factors, surfaces, surroundings, coldest, is_too_cold, stop);
+    if (highest >= black(max_temperature))
+        return wrong(
+            fmt::format("surface {} would have {:.4g} K to give off {:g} W", hottest + 1, out.temperature[hottest],
+                        surfaces[hottest].heat),
+            "give it a smaller heat (in watts, of the whole surface), or its temperature in place of its heat");
     return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <string>
 
 namespace exitance {
 namespace {
@@ -108,6 +109,51 @@ TEST(GrayExchange, WhatIsWrongIsReported) {
     ASSERT_FALSE(open);
     EXPECT_NE(open.error().message.find("2 of 2 surfaces see openings"), std::string::npos) << open.error().message;
     EXPECT_NE(message({{0.5, {}, -1e6}, {0.5, 300.0}}).find("absolute zero"), std::string::npos);
+}
+
+/// Number that follows a text in a message.
+double number_after(const std::string& message, const std::string& text) {
+    const std::size_t at = message.find(text);
+    EXPECT_NE(at, std::string::npos) << message;
+    return at == std::string::npos ? 0 : std::stod(message.substr(at + text.size()));
+}
+
+TEST(GrayExchange, AHeatThatCannotBeTakenUpIsReportedWithItsLimit) {
+    // Surface 1 is adiabatic and would also be too cold, but the heat of surface 2 is at fault.
+    const SparseFactors F = table({2, 2, 4}, {{0, 0.4, 0.6}, {0.4, 0, 0.6}, {0.3, 0.3, 0.4}});
+    const auto heated = [&](double heat, double temperature) {
+        return solve_gray_exchange(F, std::vector<ThermalSurface>{{0.9, {}, 0}, {0.5, {}, heat}, {0.5, temperature}},
+                                   {}, StopRequest());
+    };
+    const auto excess = heated(-1e6, 300);
+    ASSERT_FALSE(excess);
+    EXPECT_EQ(excess.error().code, ErrorCode::bad_input);
+    const double most =
+        number_after(excess.error().message, "surface 2 cannot take up 1e+06 W: at absolute zero it takes up ");
+    EXPECT_GT(most, 0);
+    EXPECT_NEAR(number_after(excess.error().hint, "give it a heat of "), -most, 1e-9 * most);
+    // Both remedies help: a heat nearer to 0, and a hotter surface. A heat further from 0 does not.
+    EXPECT_TRUE(heated(-0.999 * most, 300));
+    EXPECT_FALSE(heated(-1.001 * most, 300));
+    EXPECT_TRUE(heated(-1.001 * most, 301));
+    EXPECT_NEAR(heated(-0.999 * most, 300)->temperature[1], 0, 100);
+    // With surroundings, for two such surfaces: the message names one and counts the other.
+    const auto two = solve_gray_exchange(F, std::vector<ThermalSurface>{{0.9, {}, -1e5}, {0.5, {}, -1e6}, {0.5, 300.0}},
+                                         280, StopRequest());
+    ASSERT_FALSE(two);
+    EXPECT_NE(two.error().message.find("surface 2 cannot"), std::string::npos) << two.error().message;
+    EXPECT_NE(two.error().message.find("(1 more"), std::string::npos) << two.error().message;
+}
+
+TEST(GrayExchange, AHeatThatMakesASurfaceHotterThanAnyMaterialIsReported) {
+    const SparseFactors F = table({2, 2, 4}, {{0, 0.4, 0.6}, {0.4, 0, 0.6}, {0.3, 0.3, 0.4}});
+    const auto out = solve_gray_exchange(F, std::vector<ThermalSurface>{{0.9, {}, 0}, {0.5, {}, 1e15}, {0.5, 300.0}},
+                                         {}, StopRequest());
+    ASSERT_FALSE(out);
+    EXPECT_GT(number_after(out.error().message, "surface 2 would have "), 1e5);
+    EXPECT_NE(out.error().hint.find("a smaller heat"), std::string::npos);
+    EXPECT_TRUE(solve_gray_exchange(F, std::vector<ThermalSurface>{{0.9, {}, 0}, {0.5, {}, 1e9}, {0.5, 300.0}}, {},
+                                    StopRequest()));
 }
 
 }  // namespace

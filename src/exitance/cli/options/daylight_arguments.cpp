@@ -133,7 +133,8 @@ void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
                    throw CLI::ValidationError("--sun-day", fmt::format("'{}' is not a day such as 03-21", w));
                arguments.sun_day.month = month, arguments.sun_day.day = day;
            },
-           "Cloudless day whose hours of sunlight are counted, MM-DD. Default 03-21")
+           "Cloudless day whose hours of sunlight are counted, MM-DD: the time for which the sun is visible from a "
+           "sensor's position, in any direction. Default 03-21")
         ->type_name("DAY");
     app.add_option_function<std::string>(
            "--sun-altitude",

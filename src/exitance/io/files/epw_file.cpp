@@ -103,6 +103,7 @@ class EpwReader {
     Result<void> read_header(const std::vector<std::string_view>& fields);
     Result<void> read_row(const std::vector<std::string_view>& fields);
     Result<SkyValues> read_light(const std::vector<std::string_view>& fields, std::size_t first, double missing) const;
+    bool are_clock_times() const;
     Result<void> count_hours_from_one();
     Result<void> make_hours();
     WeatherHour mean_of(std::span<const DataLine* const> rows);
@@ -208,13 +209,30 @@ Result<void> EpwReader::read_line(std::string_view line) {
     return rows_.empty() ? read_header(fields) : read_row(fields);
 }
 
-/// Changes hours counted from 0 to 23 by their beginning to 1 to 24 by their end.
+/// True if hours and minutes are the clock times at which the lines end, from 0:10 to 24:00 for steps of ten minutes.
+bool EpwReader::are_clock_times() const {
+    return std::all_of(rows_.begin(), rows_.end(), [](const DataLine& row) {
+        return row.minute >= 0 && row.minute < 60 && (row.hour > 0 || row.minute > 0) &&
+               (row.hour < 24 || row.minute == 0);
+    });
+}
+
+/// Changes hours counted from 0 to 23 by their beginning, and clock times, to 1 to 24 by their end.
 Result<void> EpwReader::count_hours_from_one() {
     const auto is_hour = [](int hour) { return [hour](const DataLine& row) { return row.hour == hour; }; };
     const auto zero = std::find_if(rows_.begin(), rows_.end(), is_hour(0));
     if (zero == rows_.end()) return {};
-    if (std::any_of(rows_.begin(), rows_.end(), is_hour(24)))
-        return error_at(zero->line, "there are hours 0 and 24 in the file", "hours are counted from 1 to 24");
+    const bool has_24 = std::any_of(rows_.begin(), rows_.end(), is_hour(24));
+    if (has_24 && are_clock_times()) {
+        // The line of 1:00 ends the first hour.
+        for (DataLine& row : rows_) row.minute == 0 ? row.minute = 60 : ++row.hour;
+        out_.warnings.push_back("times go from hour 0 to 24:00: they are read as the clock times at which lines end");
+        return {};
+    }
+    if (has_24)
+        return error_at(zero->line, "there are hours 0 and 24 in the file",
+                        "hours are counted from 1 to 24; or hours and minutes are the times at which lines end, "
+                        "of which the last is 24:00");
     for (DataLine& row : rows_) ++row.hour;
     out_.warnings.push_back("hours are counted from 0 to 23: hour 0 is read as the first of its day");
     return {};

@@ -42,8 +42,9 @@ struct WeatherEfficacies {
 ///
 /// The header begins with LOCATION. Hours begin after DATA PERIODS, or with the first line of numbers. Fields are
 /// separated by commas, or by semicolons or tabs in the whole file. Keys may be in upper or lower case; control-Z ends
-/// the file. Lines of the same hour with different minutes are averaged. Hours that are counted from 0 to 23 become 1
-/// to 24, with a warning. 29 February is accepted in every year and read as that of a leap year.
+/// the file. Lines of the same hour with different minutes are averaged. Hours that are counted from 0 to 23, and
+/// clock times from 0:10 to 24:00, become hours from 1 to 24, with a warning. 29 February is accepted in every year and
+/// read as that of a leap year.
 ///
 /// If direct or diffuse irradiance is missing (blank, or at least 9999), it is computed from its illuminance, or from
 /// the other of the two and global irradiance or illuminance. If that is impossible, the hour is marked as missing and

@@ -162,6 +162,27 @@ TEST_F(EpwFile, HoursFromZeroAreShifted) {
               std::string::npos);
 }
 
+TEST_F(EpwFile, ClockTimesUpTo24AreTheEndsOfTheirSteps) {
+    const auto day = [](int from, int to, int step) {  // minutes from midnight
+        std::string out;
+        for (int t = from; t <= to; t += step)
+            out += line(6, 1, t / 60, std::to_string(t % 60), "0,100," + std::to_string(t / 10));
+        return out;
+    };
+    const std::string head = std::string(location) + periods;
+    const Weather ends = good(head + day(10, 1440, 10));
+    EXPECT_EQ(ends.warnings.size(), 1u);
+    ASSERT_EQ(ends.hours.size(), 24u);
+    for (std::size_t h = 0; h < 24; ++h) {
+        EXPECT_EQ(ends.hours[h].hour, static_cast<int>(h) + 1);
+        EXPECT_EQ(ends.hours[h].diffuse_horizontal, 6.0 * static_cast<double>(h) + 3.5);  // lines 1 to 6 of the hour
+    }
+    // Lines named by their beginning or their middle have no hour 24.
+    for (const int first : {0, 5}) EXPECT_EQ(good(head + day(first, 1439, 10)).hours[0].diffuse_horizontal, 2.5);
+    // With a line of 0:00, that of 24:00 has two meanings.
+    EXPECT_NE(fault(head + day(0, 1440, 10)).find("there are hours 0 and 24"), std::string::npos);
+}
+
 TEST_F(EpwFile, MissingIrradiancesFollowFromIlluminances) {
     for (const char* missing : {"9999,9999,9999", "99999,99999,99999", ",,", "-1,-1,-1", "9999999999,9999,9999"}) {
         const Weather weather = good(location + line(6, 21, 12, "0", missing, "70000,50000,12000"));

@@ -6,7 +6,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -72,13 +76,21 @@ class WeaReader {
         double time = 0, direct = 0, diffuse = 0;
         if (!(words >> now.month >> now.day >> time >> direct >> diffuse))
             return lines_.error("is neither a key nor 'month day hour direct diffuse'");
-        constexpr int hours_a_day = 24;
-        if (!is_date(leap_year, now.month, now.day) || !(time >= 0 && time <= hours_a_day) || !std::isfinite(direct) ||
+        if (!is_date(leap_year, now.month, now.day) || !(time >= 0) || !std::isfinite(time) || !std::isfinite(direct) ||
             !std::isfinite(diffuse))
             return lines_.error("is not an hour of a year with its light");
-        if (now.month == 2 && now.day > 28) now.year = leap_year;
-        now.hour = std::min(hours_a_day, static_cast<int>(time) + 1);
+        if (time >= hours_a_day + max_late)
+            return lines_.error(fmt::format("{:g} is not a time of {}-{}", time, now.month, now.day),
+                                "times are the middle of each step, in hours from midnight: the first hour of a day is "
+                                "0 to 1, not 1 to 2");
         negative_ += direct < 0 || diffuse < 0;
+        if (now.month == 2 && now.day > february) now.year = leap_year, has_leap_day_ = true;
+        if (time > hours_a_day) {
+            late_.push_back({now.month, now.day, time, std::max(0.0, direct), std::max(0.0, diffuse), lines_.line()});
+            return {};
+        }
+        if (time < max_late) early_.insert({now.month, now.day, milli(time)});
+        now.hour = std::min(hours_a_day, static_cast<int>(time) + 1);
         const bool is_same = !out_.hours.empty() && out_.hours.back().month == now.month &&
                              out_.hours.back().day == now.day && out_.hours.back().hour == now.hour;
         if (!is_same) out_.hours.push_back(now), steps_.push_back(0);
@@ -88,7 +100,41 @@ class WeaReader {
         return {};
     }
 
+    /// Adds the steps whose middle is after 24:00 to the first hour of the next day.
+    Result<void> add_late_steps() {
+        if (late_.empty()) return {};
+        std::map<std::pair<int, int>, std::size_t> first_hour;  // per month and day
+        for (std::size_t h = 0; h < out_.hours.size(); ++h)
+            if (out_.hours[h].hour == 1) first_hour.emplace(std::pair(out_.hours[h].month, out_.hours[h].day), h);
+        for (const LateStep& step : late_) {
+            WeatherHour now;
+            now.month = step.month, now.day = step.day + 1;
+            const int year = has_leap_day_ ? leap_year : now.year;
+            if (!is_date(year, now.month, now.day)) now.month = step.month % 12 + 1, now.day = 1;
+            if (now.month == 2 && now.day > february) now.year = leap_year;
+            if (early_.contains({now.month, now.day, milli(step.time - hours_a_day)})) {
+                Error error = lines_.error(fmt::format("{}-{} {:g} occurs again, as {}-{} {:g}", step.month, step.day,
+                                                       step.time, now.month, now.day, step.time - hours_a_day),
+                                           "a time after 24 is that of the next day: remove one of both lines");
+                error.where = error.where.substr(0, error.where.rfind(':') + 1) + std::to_string(step.line);
+                return error;
+            }
+            const auto [at, is_new] = first_hour.emplace(std::pair(now.month, now.day), out_.hours.size());
+            if (is_new) out_.hours.push_back(now), steps_.push_back(0);
+            WeatherHour& hour = out_.hours[at->second];
+            hour.direct_normal += step.direct, hour.diffuse_horizontal += step.diffuse;
+            ++steps_[at->second];
+        }
+        out_.warnings.push_back(
+            fmt::format("{} lines have times up to {:g}: times after 24 are read as those of the next day",
+                        late_.size(), std::max_element(late_.begin(), late_.end(), [](const auto& a, const auto& b) {
+                                          return a.time < b.time;
+                                      })->time));
+        return {};
+    }
+
     Result<Weather> finish() {
+        if (const Result<void> added = add_late_steps(); !added) return added.error();
         const double units = keys_["weather_data_file_units"];
         if (units != 1 && units != 2)
             return lines_.error(fmt::format("weather_data_file_units {:g} is not supported", units),
@@ -108,9 +154,26 @@ class WeaReader {
         return std::move(out_);
     }
 
+    static constexpr int hours_a_day = 24, february = 28;
+    /// Hours after 24 before which the middle of a step lies that begins on its day and takes at most an hour.
+    static constexpr double max_late = 0.5;
+
+    /// A step whose middle is after 24:00.
+    struct LateStep {
+        int month, day;
+        double time, direct, diffuse;  ///< Hours; the light as in the file, at least 0.
+        int line;
+    };
+
+    /// A time in thousandths of an hour, the precision of the files.
+    static int milli(double time) { return static_cast<int>(std::lround(1000 * time)); }
+
     LineReader lines_;
     WeatherEfficacies efficacies_;
     Weather out_;
+    std::vector<LateStep> late_;
+    std::set<std::array<int, 3>> early_;  ///< Month, day and time of the steps of the first half hour of each day.
+    bool has_leap_day_ = false;
     std::map<std::string, double> keys_;
     std::vector<double> steps_;  ///< Number of lines of each hour.
     std::size_t negative_ = 0;

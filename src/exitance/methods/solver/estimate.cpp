@@ -163,7 +163,7 @@ void Solver::warn_of_rooms() {
     if (worst->error <= limit) return;
     const auto wrong =
         std::count_if(rooms.begin(), rooms.end(), [&](const RoomError& room) { return room.error > limit; });
-    warn(fmt::format("the light of the room {} is wrong by about {:.3g}%, where {:.3g}% was requested{}",
+    warn(fmt::format("the light of the {} is wrong by about {:.3g}%, where {:.3g}% was requested{}",
                      place_of_room(stage_, static_cast<std::size_t>(worst - rooms.begin())), 100 * worst->error,
                      100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
 }
