@@ -289,14 +289,13 @@ Result<void> IesReader::make_types_ab(const std::vector<double>& vertical, const
     for (std::size_t i = 1; i < circle.angle.size(); ++i)
         if (!(circle.angle[i] > circle.angle[i - 1])) return text_.error("angles are too close to one another");
     set_table(out_, theta, circle);
-    // The beam is along the luminaire's -z, V towards +x, H towards -y: clockwise, while phi of type C is
-    // counter-clockwise (LM-63-2002, 3.0). The polar angle -90 is along the table's -z.
+    // The beam is along the luminaire's -z, V towards +x, H towards +y. The polar angle -90 is along the table's -z.
     if (is_b)
-        // d = (cos H sin V, -sin H, -cos H cos V): the axis is -y, phi = V from -z towards x.
-        out_.axis_z = {0, -1, 0}, out_.axis_x = {0, 0, -1}, out_.axis_y = {1, 0, 0};
+        // d = (cos H sin V, sin H, -cos H cos V): the axis is y, phi = V from -z towards x.
+        out_.axis_z = {0, 1, 0}, out_.axis_x = {0, 0, -1}, out_.axis_y = {1, 0, 0};
     else
-        // d = (sin V, -cos V sin H, -cos V cos H): the axis is x, phi = H from -z towards -y.
-        out_.axis_z = {1, 0, 0}, out_.axis_x = {0, 0, -1}, out_.axis_y = {0, -1, 0};
+        // d = (sin V, cos V sin H, -cos V cos H): the axis is x, phi = H from -z towards y.
+        out_.axis_z = {1, 0, 0}, out_.axis_x = {0, 0, -1}, out_.axis_y = {0, 1, 0};
     return {};
 }
 

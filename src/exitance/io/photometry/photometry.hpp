@@ -35,7 +35,7 @@ const char* name_of(Opening::Shape shape);
 /// Content of a photometric file: intensity by direction, and data about the luminaire.
 ///
 /// The luminaire's frame: in type C (and EULUMDAT), the C0 plane is along +x, C90 along +y, and gamma = 0 is down,
-/// along -z. In types A and B, the beam (H, V) = (0, 0) is along -z, positive V towards +x and positive H towards -y.
+/// along -z. In types A and B, the beam (H, V) = (0, 0) is along -z, positive V towards +x and positive H towards +y.
 /// The table has the same form for all types: theta is measured from -axis_z of the table's own frame, phi about it
 /// from axis_x towards axis_y, with all symmetries expanded. Types A and B only differ from C by their axis. Outside
 /// the file's angles the table is 0.
