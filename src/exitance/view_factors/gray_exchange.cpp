@@ -180,6 +180,14 @@ Error stopped() {
     return {ErrorCode::limit, "stopped before the heat balance was solved", "", "allow more time"};
 }
 
+/// A value >= 0 with four digits, not larger than it was, so that a limit in a message is within the limit.
+double rounded_down(double value) {
+    constexpr double ten = 10, further_digits = 3;  // derived from the format of messages, {:.4g}
+    if (!(value > 0)) return 0;
+    const double last_digit = std::pow(ten, std::floor(std::log10(value)) - further_digits);
+    return std::floor(value / last_digit) * last_digit;
+}
+
 /// The error of a heat balance in which surface `sink` and others of `is_too_cold` would be colder than absolute zero:
 /// states the heat that it takes up if these surfaces are at absolute zero.
 Error too_cold(const ExchangeAreas& exchange, const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
@@ -196,8 +204,8 @@ Error too_cold(const ExchangeAreas& exchange, const SparseFactors& factors, std:
     const double sky = black(surroundings.value_or(0));
     const GraySystem::Solution solved = system.solve(emitted, heat, sky, stop);
     if (solved.is_stopped) return stopped();
-    const double most = std::max(0.0, system.incoming(solved.radiosity)[sink] + system.leak(sink) * sky -
-                                          system.area(sink) * solved.radiosity[sink]);
+    const double most = rounded_down(std::max(0.0, system.incoming(solved.radiosity)[sink] + system.leak(sink) * sky -
+                                                       system.area(sink) * solved.radiosity[sink]));
     const auto others = std::count(is_too_cold.begin(), is_too_cold.end(), 1) - 1;
     return wrong(
         fmt::format("surface {} cannot take up {:g} W: at absolute zero it takes up {:.4g} W{}", sink + 1,
