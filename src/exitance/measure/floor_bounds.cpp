@@ -17,6 +17,7 @@ constexpr double step_share = 0.15;         ///< Share of the height, derived fr
 constexpr double nearly_all = 0.9;          ///< Share of the outline; derived from pipes and posts at machines.
 constexpr double solid_share = 0.25;        ///< Share of the outline, derived from racks between three walls.
 constexpr double large_share = 0.25;        ///< Share of the lower room's area, derived from split levels.
+constexpr double small_share = 0.05;        ///< Share of the lower room's area, derived from loading docks.
 constexpr double wide = 3;                  ///< Metres; derived from containers, 2.5 m wide, and presses.
 constexpr double wide_share = 1.5;          ///< Share of the rise, derived from containers in models out of scale.
 constexpr double standing_height = 1.9;     ///< Metres; derived from the height of people.
@@ -63,8 +64,8 @@ class Bounds {
         if (share < solid_share || has_stairs()) return false;
         if (share >= nearly_all) return true;
         const FloorCells::Part& part = storey_.parts()[part_];
-        const bool is_large =
-            part.area > large_share * lower_area_ || part.breadth > std::min(wide, wide_share * rise_);
+        const bool is_wide = part.breadth > std::min(wide, wide_share * rise_);
+        const bool is_large = part.area > (is_wide ? small_share : large_share) * lower_area_;
         return !is_large && !has_space_beneath();
     }
 

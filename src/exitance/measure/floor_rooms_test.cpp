@@ -243,6 +243,7 @@ TEST(FloorRooms, InAnOpenModelATerraceWithParapetsIsARoomAndARoofIsNone) {
     Builder b(30, {1000, -400, 3}, 1);
     b.floor({-40, -40, 0}, {40, 40, 0}, "meadow");
     b.box({0, 0, 0}, {10, 8, 3}, "house"), b.box({20, 0, 0}, {30, 8, 6}, "house");
+    b.box({10, 0, 0}, {18, 8, 5}, "higher house beside it");
     for (const auto& [lo, hi] : std::vector<std::pair<Vec3, Vec3>>{{{20, 0, 6}, {30, 0.3, 7}},
                                                                    {{20, 7.7, 6}, {30, 8, 7}},
                                                                    {{20, 0.3, 6}, {20.3, 7.7, 7}},
