@@ -41,6 +41,9 @@ TEST(ErrorShare, ACrowdIsManyUnsplitPolygons) {
     EXPECT_TRUE(ErrorShare::is_crowd(6000, 5000));
     EXPECT_FALSE(ErrorShare::is_crowd(6000, 1000));
     EXPECT_FALSE(ErrorShare::is_crowd(600, 500));
+    EXPECT_FALSE(ErrorShare::is_crowd(6000, 5000, 2));
+    EXPECT_TRUE(ErrorShare::is_crowd(9000, 5000, 2));
+    EXPECT_LT(ErrorShare::small_area(1000, 20000, 4), ErrorShare::small_area(1000, 20000));
 }
 
 }  // namespace

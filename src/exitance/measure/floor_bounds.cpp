@@ -12,14 +12,17 @@
 namespace exitance {
 namespace {
 
-constexpr double max_step = 0.3;            ///< Metres; derived from steps of stairs, at most 0.25 m high.
-constexpr double step_share = 0.15;         ///< Share of the height, derived from such steps in rooms of 2 m.
-constexpr double nearly_all = 0.9;          ///< Share of the outline; derived from pipes and posts at machines.
-constexpr double solid_share = 0.25;        ///< Share of the outline, derived from racks between three walls.
-constexpr double large_share = 0.25;        ///< Share of the lower room's area, derived from split levels.
-constexpr double small_share = 0.05;        ///< Share of the lower room's area, derived from loading docks.
-constexpr double wide = 3;                  ///< Metres; derived from containers, 2.5 m wide, and presses.
-constexpr double wide_share = 1.5;          ///< Share of the rise, derived from containers in models out of scale.
+constexpr double max_step = 0.3;      ///< Metres; derived from steps of stairs, at most 0.25 m high.
+constexpr double step_share = 0.15;   ///< Share of the height, derived from such steps in rooms of 2 m.
+constexpr double nearly_all = 0.9;    ///< Share of the outline; derived from pipes and posts at machines.
+constexpr double solid_share = 0.25;  ///< Share of the outline, derived from racks between three walls.
+constexpr double large_share = 0.25;  ///< Share of the lower room's area, derived from split levels.
+constexpr double small_share = 0.05;  ///< Share of the lower room's area, derived from loading docks.
+constexpr double wide = 3;            ///< Metres; derived from containers, 2.5 m wide, and presses.
+constexpr double wide_share = 1.5;    ///< Share of the rise, derived from containers in models out of scale.
+/// Least height of the space above a floor, as a share of the floor's height above the ground. The space above the
+/// highest roof of a model without ceilings has no height of its own. Derived from storeys: a tenth of ten of them.
+constexpr double least_height_share = 0.1;
 constexpr double standing_height = 1.9;     ///< Metres; derived from the height of people.
 constexpr double standing_share = 0.6;      ///< Share of the rise, derived from racks of two shelves.
 constexpr std::size_t max_edges = 2000;     ///< Derived from a tenth of a second of ray casting.
@@ -28,6 +31,11 @@ constexpr std::size_t sampled_cells = 100;  ///< Derived from the share of half 
 constexpr double apart = 2e-3;  ///< Metres; two faces that are closer are one sheet: derived from `one_plane`.
 
 const Vec3 down{0, 0, -1};
+
+/// Height of a floor above the lowest point of the scene, metres.
+double height_above_ground(const Scene& scene, const FloorCells& storey) {
+    return storey.floor().shapes[0].loops[0][0].z - scene.box().lo.z;
+}
 
 /// Examines one part of a floor.
 class Bounds {
@@ -38,14 +46,14 @@ class Bounds {
           tracer_(tracer),
           storey_(storey),
           part_(part),
-          height_(storey.parts()[part].height),
+          height_(std::max(storey.parts()[part].height, least_height_share * height_above_ground(scene, storey))),
           step_(std::min(max_step, step_share * height_)) {
         std::vector<FloorCells::Edge> edges = storey.edges(part);
         const std::size_t stride = (edges.size() + max_edges - 1) / max_edges;
         for (std::size_t i = 0; i < edges.size(); i += stride) edges_.push_back(edges[i]);
         depth_.resize(edges_.size()), kind_.resize(edges_.size());
         parallel_for(edges_.size(), 16, [&](std::size_t i) { kind_[i] = kind_of(i); });
-        // The rooms below are found on one thread: they cast rays of their own.
+        // On one thread: the results are combined, and there are few edges.
         for (std::size_t i = 0; i < edges_.size(); ++i) {
             if (kind_[i] != Kind::falls) continue;
             const std::optional<LowerRoom> room = find_lower_room(edges_[i].outer + depth_[i] * down);
@@ -62,8 +70,9 @@ class Bounds {
         const auto falling = static_cast<std::size_t>(std::count(kind_.begin(), kind_.end(), Kind::falls));
         const double share = static_cast<double>(falling) / static_cast<double>(kind_.size());
         if (share < solid_share || has_stairs()) return false;
-        if (share >= nearly_all) return true;
         const FloorCells::Part& part = storey_.parts()[part_];
+        // A storey of a building without outer walls is large, and people can stand below it.
+        if (share >= nearly_all) return part.area <= large_share * lower_area_ || !has_space_beneath();
         const bool is_wide = part.breadth > std::min(wide, wide_share * rise_);
         const bool is_large = part.area > (is_wide ? small_share : large_share) * lower_area_;
         return !is_large && !has_space_beneath();

@@ -143,13 +143,14 @@ void FloorRooms::leave_out_furniture(const Scene& scene, const RayTracer& tracer
 bool FloorRooms::is_body_in(const std::vector<FloorRoom>& lower, const FloorRoom& room, const Scene& scene,
                             const RayTracer& tracer) const {
     const double own = level(room);
-    // The highest room that contains a place counts: floors of several storeys are above each other.
+    // The highest room that contains a place counts: floors of several storeys are above each other. If several rooms
+    // have one floor, the largest counts.
     const auto find_lower_room = [&](const Point& p) {
         std::optional<LowerRoom> out;
-        for (const FloorRoom& r : lower)
-            if (level(r) < own - one_plane && level(r) <= p.z + one_plane && (!out || level(r) >= out->level) &&
-                is_above(p, r))
-                out = {level(r), r.area};
+        for (const FloorRoom& r : lower) {
+            if (level(r) >= own - one_plane || level(r) > p.z + one_plane || !is_above(p, r)) continue;
+            if (!out || std::pair(level(r), r.area) > std::pair(out->level, out->area)) out = {level(r), r.area};
+        }
         return out;
     };
     return is_top_of_body(scene, tracer, storeys_[room.storey], room.part, find_lower_room);

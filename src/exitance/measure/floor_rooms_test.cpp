@@ -146,7 +146,7 @@ void add_slab(Builder& b, Vec3 lo, Vec3 hi) {
     b.face({{lo.x, lo.y, lo.z}, {lo.x, hi.y, lo.z}, {hi.x, hi.y, lo.z}, {hi.x, lo.y, lo.z}}, "slab");
 }
 
-/// FloorHeights of the floors of all rooms above the hall's floor, metres, in the order of rooms.
+/// Heights of the floors of all rooms above the hall's floor, metres, in the order of rooms.
 std::vector<double> floor_heights(Builder& b, double scale = 1) {
     const double ground = b.at(0, 0, 0).z;
     const Scene scene = b.scene();
@@ -170,6 +170,14 @@ TEST(FloorRooms, RacksInAHallAreNoRooms) {
             }
         EXPECT_EQ(floor_heights(b, scale), FloorHeights{0}) << scale;
     }
+}
+
+TEST(FloorRooms, StoreysOfABuildingWithoutOuterWallsAreRooms) {
+    Builder b(30, {1000, -400, 3}, 1);
+    b.floor({-40, -40, 0}, {40, 40, 0}, "street");
+    for (int storey = 1; storey <= 3; ++storey) add_slab(b, {-30, -30, 3.0 * storey - 0.2}, {30, 30, 3.0 * storey});
+    for (const double x : {-20.0, 0.0, 20.0}) b.box({x, -0.2, 0}, {x + 0.4, 0.2, 8.8}, "column");
+    EXPECT_EQ(floor_heights(b), (FloorHeights{0, 3, 6}));  // the highest slab is a roof
 }
 
 TEST(FloorRooms, MachinesAtWallsAndBesideEachOtherAreNoRooms) {

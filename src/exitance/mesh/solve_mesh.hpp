@@ -26,8 +26,8 @@ struct MeshSize {
 /// their normals); 1 from a right angle on, 0 if no surface rises. Light exchange is singular at such borders.
 using ConcaveBorders = std::vector<double>;
 
-/// Finds the concave borders of each piece, but not those of the small pieces of a crowd, which is larger by
-/// `multiplicity` than in a single room (`ErrorShare`). O(n log n).
+/// Finds the concave borders of each piece, but not those of the small pieces of a crowd (`ErrorShare::is_crowd`, with
+/// this `multiplicity`). O(n log n).
 std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces,
                                                  double multiplicity = 1);
 

@@ -22,6 +22,9 @@ class BodySurroundings;
 /// rays; with half nothing changes: measured by `exitance solve keyhole.obj --error 0.02`.
 inline constexpr double min_room_share = 0.05;
 
+/// Largest `LightRooms::multiplicity`: that of 1,000 rooms, the most for which times and memory were measured.
+inline constexpr double max_multiplicity = 50;
+
 /// The rooms of a scene: parts of free space, separated at openings smaller than a tenth of their walls' area. Light
 /// levels of rooms differ by orders of magnitude, so that errors are judged room by room; otherwise the light outdoors
 /// would hide any error in a cellar. The rooms of a building, as users count them, are `FloorRooms`. A room with less
@@ -34,13 +37,13 @@ class LightRooms {
 
     std::size_t count() const { return areas_.size(); }  ///< Number of rooms; 0 if the whole scene is one room.
     double area(std::size_t room) const { return areas_[room]; }  ///< m^2
-    /// Number of spaces between which no light passes, and of rooms; counts also closed rooms that are too small to be
-    /// judged on their own: (sum of areas)^2 / sum of squared areas, so that small ones beside large ones hardly count.
-    /// At least 1. Many small rooms that are connected by doors count as few.
+    /// Number of closed rooms, between which no light passes; counts also those that are too small to be judged on
+    /// their own: (sum of areas)^2 / sum of squared areas, so that small ones beside large ones hardly count. At least
+    /// 1. Rooms that doors or windows connect count as one.
     double spaces() const { return spaces_; }
     /// Factor on numbers of elements that are sufficient for one room. With up to 1 / `min_room_share` spaces it is 1:
     /// all of them can be rooms of their own, and are meshed finer if they are smaller than others.
-    double multiplicity() const { return std::max(1.0, min_room_share * spaces_); }
+    double multiplicity() const { return std::clamp(min_room_share * spaces_, 1.0, max_multiplicity); }
     /// Index of the room that contains a point of a region; rooms are sorted by descending area.
     std::size_t at(RegionId region, const Point& x) const;
     /// Room of an element's centre.

@@ -53,8 +53,17 @@ TEST(LightRooms, CountsTheSpacesOfManyRooms) {
         many.push_back({{5.0 * (k % 8), 6.0 * (k / 8), 0}, {5.0 * (k % 8) + 4, 6.0 * (k / 8) + 5, 3}});
     EXPECT_NEAR(rooms_of(boxes(many)).spaces(), 48, 0.5);
     EXPECT_NEAR(rooms_of(boxes(many)).multiplicity(), 48.0 / 20, 0.05);
-    many.push_back({{0, -1000, 0}, {1000, -100, 3}});  // a hall that is far larger than all other rooms
+    many.push_back({{0, -1000, 0}, {400, -600, 100}});  // a hall that is far larger than all other rooms
     EXPECT_NEAR(rooms_of(boxes(many)).spaces(), 1, 0.1);
+    // Rooms with thick walls: the space between their outsides, which no light reaches, does not count.
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}, {"outside", Spectrum(0.5), Spectrum()}};
+    for (int k = 0; k < 30; ++k) {
+        add_box(d, {5.0 * k, 0, 0}, {5.0 * k + 4, 5, 3}, 0);
+        add_box(d, {5.0 * k + 4.2, 5.2, 3.2}, {5.0 * k - 0.2, -0.2, -0.2}, 1);
+    }
+    EXPECT_NEAR(rooms_of(*make_scene(std::move(d)).scene).spaces(), 30, 0.5);
     for (const char* name : {"furnace", "tube", "chair", "cornell", "complex"})
         EXPECT_LT(rooms_of(built_scene(name)).spaces(), 1.5) << name;
 }

@@ -79,7 +79,8 @@ struct Part {
 class RoomFinder {
   public:
     RoomFinder(const CoarseElements& in, std::uint64_t seed)
-        : flow_{in.rows, leaf_areas(in.tree, in.numbering), starting_light(in.tree, in.numbering, seed), {}, {}, {}},
+        : scene_(in.stage.scene),
+          flow_{in.rows, leaf_areas(in.tree, in.numbering), starting_light(in.tree, in.numbering, seed), {}, {}, {}},
           tree_(in.tree),
           numbering_(in.numbering),
           has_sky_(!in.stage.scene.distant().domes.empty()) {
@@ -108,7 +109,7 @@ class RoomFinder {
                 parts_.push_back(std::move(part));
         }
         for (Part& part : open) parts_.push_back(std::move(part));
-        RoomLeaves out{.rooms = {}, .spaces = count_spaces()};
+        RoomLeaves out{.rooms = {}, .spaces = spaces_};
         sort();
         while (const Part* part = smallest_indoors()) {
             if (part == &parts_.front() || counts(*part)) break;
@@ -192,6 +193,7 @@ class RoomFinder {
             if (has_sky_) total_ = outer.area, whole_ = outer.box;
             return {std::move(outer)};
         }
+        spaces_ = count_spaces(out);
         out.back().add(outer);
         for (std::size_t k = 0; k < out.size(); ++k) {
             for (std::uint32_t i : out[k].leaves) flow_.part[i] = static_cast<std::uint16_t>(std::min(k, max_rooms));
@@ -253,12 +255,13 @@ class RoomFinder {
         return true;
     }
 
-    double count_spaces() const;
+    double count_spaces(const std::vector<Part>& parts) const;
     std::vector<std::uint8_t> blind_leaves() const;
     void place_blind_leaves();
     const Part* smallest_indoors() const;
     void join(std::size_t number);
 
+    const Scene& scene_;
     Flow flow_;
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
@@ -267,14 +270,22 @@ class RoomFinder {
     std::vector<std::uint8_t> within_;  ///< For every leaf, 1 while it belongs to the part that is being made.
     Box inner_, whole_;                 ///< Bounds of all rooms but the largest, and of the whole scene.
     double total_ = 0;                  ///< Area of the scene, m^2.
+    double spaces_ = 1;                 ///< See `LightRooms::spaces`.
     double indoor_area_ = 0;            ///< Area of the elements that see little of the sky, m^2.
     std::uint16_t fresh_ = 1;           ///< Number of the next part.
 };
 
-/// Returns `LightRooms::spaces` of the parts.
-double RoomFinder::count_spaces() const {
+/// Returns `LightRooms::spaces` of parts between which no light passes. Dark ones, such as the insides of furniture and
+/// the space between thick walls, do not count, nor do the outdoors.
+double RoomFinder::count_spaces(const std::vector<Part>& parts) const {
+    const auto emits = [&](std::uint32_t i) {
+        return scene_.materials()[scene_.regions()[tree_.region(numbering_.leaves[i])].material].emits();
+    };
     double sum = 0, squares = 0;  // m^2, m^4
-    for (const Part& part : parts_) sum += part.area, squares += part.area * part.area;
+    for (const Part& part : parts) {
+        const bool is_lit = !scene_.lights().empty() || std::any_of(part.leaves.begin(), part.leaves.end(), emits);
+        if (is_lit && !is_outdoors(part)) sum += part.area, squares += part.area * part.area;
+    }
     return squares > 0 ? sum * sum / squares : 1;
 }
 

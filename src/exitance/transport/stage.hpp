@@ -68,7 +68,8 @@ struct Stage {
     /// `ErrorShare::small_area` of this many elements, m^2.
     double small_area(std::size_t elements) const;
 
-    /// Sets the rooms. Many rooms of few polygons each are no crowd: their concave borders are found, too.
+    /// Sets the rooms. If there are many, the concave borders are found again: those that were left out because the
+    /// polygons of all rooms together looked like a crowd of small ones.
     void set_rooms(LightRooms found);
 
     /// Meshes all pieces: graded towards concave edges, split along contacts with other polygons, and finer in rooms

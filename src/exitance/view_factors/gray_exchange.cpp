@@ -210,7 +210,7 @@ Error too_cold(const ExchangeAreas& exchange, const SparseFactors& factors, std:
     return wrong(
         fmt::format("surface {} cannot take up {:g} W: at absolute zero it takes up {:.4g} W{}", sink + 1,
                     -surfaces[sink].heat, most,
-                    others == 0 ? "" : fmt::format(" ({} more surfaces are too cold, too)", others)),
+                    others == 0 ? "" : fmt::format(" ({} more {} too cold, too)", others, others == 1 ? "is" : "are")),
         fmt::format("give it a heat of {:.4g} W or more (negative heat is taken up, positive heat is given off), make "
                     "others hotter, or give its temperature in place of its heat",
                     0 - most));

@@ -31,7 +31,7 @@ struct Knobs {
 
 /// Returns the settings for a relative error and the lit pieces of a scene. Rules of thumb, verified afterwards by the
 /// certificate (R: the error): elements ~ 1/R, rays per point ~ R^(-4/3) (scrambled Sobol points), strips along concave
-/// edges until their share of the error is R. The number of elements is multiplied by that of `lit`.
+/// edges until their share of the error is R. The number of elements is multiplied by `lit.multiplicity`.
 Knobs knobs_for_error(double error, const LitSpaces& lit, const SolveOptions& options);
 
 /// Returns the settings for light that is summed over elements (`ElementGather`) instead of sampled by rays. Sums have

@@ -97,5 +97,22 @@ TEST(Tightened, KeepsSettingsOfTheUser) {
     EXPECT_EQ(finer.knobs.solve_mesh.edge, 0.5);
 }
 
+TEST(Accuracy, ManyRoomsGetElementsInProportion) {
+    LitSpaces lit;
+    for (int i = 0; i < 40; ++i)
+        lit.pieces.push_back({RegionId(0), Patch{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, Patch::Shape::parallelogram}});
+    const auto elements = [&](double multiplicity, bool gather) {
+        lit.multiplicity = multiplicity;
+        const Knobs found = knobs_for_error(0.01, lit, {});
+        return static_cast<double>(
+            predict_elements(lit.pieces, gather ? found.gather_mesh.edge : found.solve_mesh.edge));
+    };
+    // an edge is found in steps that change the number of elements by up to a factor of 2
+    for (const bool gather : {false, true}) {
+        const double ratio = elements(16, gather) / elements(1, gather);
+        EXPECT_TRUE(ratio >= 8 && ratio <= 32) << ratio;
+    }
+}
+
 }  // namespace
 }  // namespace exitance

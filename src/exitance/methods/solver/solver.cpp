@@ -64,7 +64,7 @@ Result<Solution> Solver::run() {
     release_freed_memory();
     make_exported_mesh();
     // for the statistics of escaping light
-    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);
+    if (!has_estimate(options_)) stage_.set_rooms(find_light_rooms(stage_, options_.seed, stop_));
     record_energy();
     progress_.close();
     return std::move(solution_);
