@@ -139,7 +139,7 @@ void FloorRooms::leave_out_furniture(const Scene& scene, const RayTracer& tracer
     rooms_ = std::move(kept);
 }
 
-/// True if a room is the top of a body that stands in one of some lower rooms or hangs in it.
+/// True if a room is the top of a body that is in one of the `lower` rooms, such as a rack or an air duct.
 bool FloorRooms::is_body_in(const std::vector<FloorRoom>& lower, const FloorRoom& room, const Scene& scene,
                             const RayTracer& tracer) const {
     const double own = level(room);

@@ -22,6 +22,18 @@ constexpr unsigned min_rays = 16;               ///< Minimum per element; suffic
 constexpr unsigned max_room_rays = 256;         ///< Maximum per element. Outdoors, a room may have few elements.
 constexpr std::size_t rays_outdoors = 1 << 18;  ///< Maximum of rays of all elements together, if there is a sky.
 
+/// Returns the rays of this many coarse elements.
+RayBudget rays_for_rooms(const Stage& stage, std::size_t elements, std::size_t pieces) {
+    const double fewer = ErrorShare::is_crowd(elements, pieces) ? fewer_rays_in_crowd(elements) : 1;
+    RayBudget rays{.average = fewer * mean_rays,
+                   .min = static_cast<unsigned>(fewer * min_rays),
+                   .max = max_room_rays,
+                   .front_alone = true};
+    const bool has_sky = !stage.scene.distant().domes.empty();
+    while (has_sky && rays.min < max_room_rays && 2 * rays.min * elements <= rays_outdoors) rays.min *= 2;
+    return rays;
+}
+
 }  // namespace
 
 std::size_t LightRooms::at(RegionId region, const Point& x) const {
@@ -101,15 +113,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     surroundings->refine(tree, &stop);
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
-    const bool has_sky = !stage.scene.distant().domes.empty();
-    const std::size_t leaves = numbering.leaves.size();
-    const double fewer = ErrorShare::is_crowd(leaves, pieces.size()) ? fewer_rays_in_crowd(leaves) : 1;
-    RayBudget rays{.average = fewer * mean_rays,
-                   .min = static_cast<unsigned>(fewer * min_rays),
-                   .max = max_room_rays,
-                   .front_alone = true};
-    if (has_sky)
-        while (rays.min < max_room_rays && 2 * rays.min * numbering.leaves.size() <= rays_outdoors) rays.min *= 2;
+    const RayBudget rays = rays_for_rooms(stage, numbering.leaves.size(), pieces.size());
     const RayRows rows(stage, {tree, numbering, *locator}, {rays, seed}, &stop);
     const std::vector<std::uint32_t> escaped = rows.escaped();
     const auto [rooms, spaces] = find_room_leaves({stage, tree, numbering, rows, escaped}, seed, stop);

@@ -60,7 +60,7 @@ struct Stage {
         return out;
     }
 
-    /// Pieces on other than unlit sides, with the enclosed spaces that `rooms` found.
+    /// Pieces on other than unlit sides, with the factor on their elements that follows from `rooms`.
     LitSpaces lit_spaces() const { return {lit_pieces(), rooms.multiplicity()}; }
 
     /// True if most of this many elements are whole small polygons (`ErrorShare`), and not those of many rooms.
