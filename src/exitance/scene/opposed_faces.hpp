@@ -17,6 +17,8 @@ class OpposedFaces {
     /// True if the face is one of the opposed faces.
     bool has(SurfaceId s) const { return is_opposed_.size() > 0 && is_opposed_[s] != 0; }
 
+    std::span<const SurfaceId> faces() const { return faces_; }
+
     /// Returns the face whose plane and outline contain `at` (metres), within the tolerance, and whose front a ray
     /// along `direction` meets. Among several it is the top one, then the one with the lowest id. None if there is no
     /// such face. O(log faces). Thread-safe.

@@ -80,8 +80,8 @@ struct Region {
     /// Border loops without T-vertices and collinear corners: outer loops counter-clockwise seen from the front, holes
     /// clockwise. Metres.
     std::vector<std::vector<Point>> loops;
-    /// Number of regions of the same plane and orientation that are under parts of it. Of two overlapping faces, the
-    /// one later in the file is on top. At most `max_stacked`.
+    /// Number of regions of the same plane and orientation that are under parts of it, at most `max_stacked`. Of two
+    /// overlapping faces, one that emits light is on top of one that does not; otherwise the later one in the file is.
     std::uint8_t level = 0;
     /// Other side of a diffusing pane; none for other regions.
     RegionId behind = {};

@@ -287,23 +287,34 @@ void SceneBuilder::check_light() {
              "give a material an emission (in MTL: Ke r g b), or the scene a sky (solve --sky)");
 }
 
-/// Stacks overlapping faces, the later one on top: counts the regions under each region, and reports the overlaps.
+/// Stacks overlapping faces: counts the regions under each region, and reports the overlaps. A face that emits light is
+/// on top of one that does not, like a panel in the plane of a ceiling; otherwise the later one is on top.
 void SceneBuilder::stack_overlaps(Scene& scene) {
     // Rays that start this near to a face cannot distinguish the two.
     const Overlaps overlaps = find_overlaps(scene, 100 * tol_.place);
-    for (const Overlap& overlap : overlaps.pairs)
-        find(Finding::Kind::warning, in_.faces[origin_[overlap.second.value]], Mark::Kind::covering,
-             fmt::format("face covers {:.3g} m^2 of {}, in the same plane: the later one is on top", overlap.area,
-                         name_of(in_.faces[origin_[overlap.first.value]])),
+    const auto emits = [&](SurfaceId s) { return scene.material(s).emits(); };
+    std::vector<std::pair<SurfaceId, SurfaceId>> lower_and_upper;
+    for (const Overlap& overlap : overlaps.pairs) {
+        SurfaceId lower = overlap.first, upper = overlap.second;
+        const bool both_emit = emits(lower) && emits(upper), is_panel = emits(lower) && !emits(upper);
+        if (is_panel) std::swap(lower, upper);
+        lower_and_upper.emplace_back(lower, upper);
+        const char* const which = both_emit  ? "in the same plane: both emit light, also where one covers the other"
+                                  : is_panel ? "in the same plane: the one that emits light is on top"
+                                             : "in the same plane: the later one is on top";
+        find(Finding::Kind::warning, in_.faces[origin_[upper.value]], Mark::Kind::covering,
+             fmt::format("face covers {:.3g} m^2 of {}, {}", overlap.area, name_of(in_.faces[origin_[lower.value]]),
+                         which),
              "cut one face out of the other, or move it away from the plane of the other",
-             "faces that cover an earlier one");
+             both_emit ? "faces that cover another that emits light" : "faces that cover another");
+    }
     if (overlaps.gave_up)
         find(Finding::Kind::warning, 0, "so many faces lie over one another in one plane that not all were compared",
              "keep only the faces that light can reach");
     for (bool changed = true; std::exchange(changed, false);)
-        for (const Overlap& overlap : overlaps.pairs) {
-            const std::uint8_t under = scene.regions_[scene.surfaces_[overlap.first].region].level;
-            std::uint8_t& over = scene.regions_[scene.surfaces_[overlap.second].region].level;
+        for (const auto& [lower, upper] : lower_and_upper) {
+            const std::uint8_t under = scene.regions_[scene.surfaces_[lower].region].level;
+            std::uint8_t& over = scene.regions_[scene.surfaces_[upper].region].level;
             if (over > under || under == max_stacked) continue;
             over = static_cast<std::uint8_t>(under + 1), changed = true;
         }

@@ -120,7 +120,7 @@ struct RayTracer::Content : TracedScene {
           device(rtcNewDevice(nullptr)),
           rtc(rtcNewScene(device)),
           opposed(s, other_side, lift_off),
-          gaps(s, reach_of_regions()),
+          gaps(narrow_gaps()),
           glass{RayFates(s.panes(), frame)} {
         attach(surfaces(surface_of), nullptr);
         if (!s.panes().empty()) attach(panes(glass.pane_of), &glass);  // the second geometry
@@ -186,15 +186,41 @@ struct RayTracer::Content : TracedScene {
         return hit.region != own || own.is_none();
     }
 
-    /// Height of a face that is so close above a point that a ray from there must start below it, metres; infinite if
-    /// there is none.
-    double gap_height(const Point& x, RegionId own) const { return gaps.has(own) ? gaps.height(x, own) : HUGE_VAL; }
+    /// Faces so close above the start of a ray that the ray would usually start beyond them.
+    struct Ceiling {
+        SurfaceId cover;  ///< Face that is stacked on the start, so that no ray leaves it; none if there is none.
+        double height = HUGE_VAL;  ///< Height of the lowest other face, metres.
+        bool is_close() const { return !cover.is_none() || height < HUGE_VAL; }
+    };
+    Ceiling ceiling(const RayEnd& start) const {
+        if (!gaps.has(start.region)) return {};
+        const SurfaceId cover = gaps.cover(start.x, start.region);
+        return {cover, cover.is_none() ? gaps.height(start.x, start.region) : 0};
+    }
 
-    /// Finds the first hit of a ray that starts at a point below a close face. Double precision decides whether it
-    /// meets that face, and single precision whether it meets another one before.
-    void trace_in_gap(const Point& origin, const Vec3& direction, RegionId own, double height, RayHit& hit) const {
+    /// Start of a ray that must start below a close face.
+    Point start_below(const Ceiling& close, const RayEnd& start) const {
+        // A ray that no other end may see starts behind its own region.
+        const double height = close.cover.is_none() ? raised(start.region) + 0.5 * close.height : -lift_off;
+        return start.x + height * scene->regions()[start.region].plane.n;
+    }
+
+    /// Finds the first hit of a ray that starts below a close face.
+    void trace_below(const Ceiling& close, const RayEnd& start, const Vec3& direction, RayHit& hit) const {
+        if (close.cover.is_none()) {
+            trace_in_gap(close, start, direction, hit);
+        } else {
+            hit = RayHit();
+            hit.surface = close.cover, hit.region = faces[close.cover].region, hit.distance = 0;
+        }
+    }
+
+    /// Double precision decides whether the ray meets the close face, and single precision whether it meets another one
+    /// before.
+    void trace_in_gap(const Ceiling& close, const RayEnd& from, const Vec3& direction, RayHit& hit) const {
+        const auto& [origin, own] = from;
         const NarrowGaps::Met met = gaps.first(origin, direction, own);
-        const Point start = origin + (0.5 * height) * scene->regions()[own].plane.n;
+        const Point start = start_below(close, from);
         float past = 0;
         RayHit other;
         for (int attempt = 0; attempt < retries; ++attempt) {
@@ -217,13 +243,12 @@ struct RayTracer::Content : TracedScene {
         hit.distance = met.distance, hit.front = met.front;
     }
 
-    /// True if anything is between a point below a close face and another point, which is lifted off `other`.
-    bool is_blocked_in_gap(const RayEnd& x, double height, const RayEnd& other) const {
-        const double above_other = gap_height(other.x, other.region);
-        const Vec3 lifted = above_other < HUGE_VAL ? (0.5 * above_other) * scene->regions()[other.region].plane.n
-                                                   : offset(other.region);
+    /// True if anything is between a point below a close face and another point.
+    bool is_blocked_below(const Ceiling& close, const RayEnd& x, const RayEnd& other) const {
+        const Ceiling above_other = ceiling(other);
+        const Point end = above_other.is_close() ? start_below(above_other, other) : other.x + offset(other.region);
         RayHit hit;
-        trace_in_gap(x.x, other.x + lifted - x.x, x.region, height, hit);
+        trace_below(close, x, end - x.x, hit);
         const bool at_end = hit.front && !other.region.is_none() && hit.region == other.region;
         return !at_end && hit.distance < 1 - end_margin;
     }
@@ -299,6 +324,10 @@ std::size_t RayTracer::triangle_count() const {
     return content_->surface_of.size();
 }
 
+std::span<const SurfaceId> RayTracer::opposed_faces() const {
+    return content_->opposed.faces();
+}
+
 /// start(i): where ray i starts, with the region that it is lifted off; `same` if that is the same for all rays.
 template <class Start>
 void RayTracer::Content::nearest(std::span<const Vec3> directions, const Start& start, bool same,
@@ -311,7 +340,7 @@ void RayTracer::Content::nearest(std::span<const Vec3> directions, const Start& 
     valid.fill(-1);
     // Write data that all packets share only once: Embree changes only the far end and the hit.
     const RayEnd shared = start(0);
-    const double shared_height = gap_height(shared.x, shared.region);
+    const Ceiling above_shared = ceiling(shared);
     for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, lifted(shared), {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {
         const std::size_t count = std::min(width, directions.size() - first);
@@ -328,14 +357,14 @@ void RayTracer::Content::nearest(std::span<const Vec3> directions, const Start& 
         }
         trace_nearest(valid, rtc, packet);
         for (std::size_t i = 0; i < count; ++i) {
-            const auto [origin, region] = start(first + i);
+            const RayEnd from = start(first + i);
             const Vec3& direction = directions[first + i];
-            const double height = same ? shared_height : gap_height(origin, region);
-            if (height < HUGE_VAL) {
-                trace_in_gap(origin, direction, region, height, hits[first + i]);
+            const Ceiling above = same ? above_shared : ceiling(from);
+            if (above.is_close()) {
+                trace_below(above, from, direction, hits[first + i]);
                 packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;  // excludes the ray from follow_mirrored()
-            } else if (!read(packet, i, origin, direction, region, hits[first + i])) {
-                retry(origin, direction, region, packet.ray.tfar[i], hits[first + i]);
+            } else if (!read(packet, i, from.x, direction, from.region, hits[first + i])) {
+                retry(from.x, direction, from.region, packet.ray.tfar[i], hits[first + i]);
             }
         }
         if (mirrored == Mirrored::followed && !glass.pane_of.empty())
@@ -389,10 +418,10 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
         for (std::size_t i = 0; i < count; ++i) {
             blocked[first + i] = packet.tfar[i] < 0;
             const auto [from, to] = ends(first + i);
-            if (const double height = gap_height(from.x, from.region); height < HUGE_VAL)
-                blocked[first + i] = is_blocked_in_gap(from, height, to);
-            else if (const double height = gap_height(to.x, to.region); height < HUGE_VAL)
-                blocked[first + i] = is_blocked_in_gap(to, height, from);
+            if (const Ceiling above = ceiling(from); above.is_close())
+                blocked[first + i] = is_blocked_below(above, from, to);
+            else if (const Ceiling above_other = ceiling(to); above_other.is_close())
+                blocked[first + i] = is_blocked_below(above_other, to, from);
         }
     }
     return blocked.size();
@@ -417,9 +446,9 @@ RayEnds RayTracer::ray_ends(std::span<const Point> points, RegionId region) cons
     const Vec3 lifted = content_->offset(region);
     RayEnds ends;
     for (std::size_t k = 0; k < RayEnds::size; ++k) {
-        const double height = content_->gap_height(points[k], region);
-        const Float3 p = content_->local(
-            points[k] + (height < HUGE_VAL ? (0.5 * height) * content_->scene->regions()[region].plane.n : lifted));
+        const RayEnd end{points[k], region};
+        const Content::Ceiling above = content_->ceiling(end);
+        const Float3 p = content_->local(above.is_close() ? content_->start_below(above, end) : points[k] + lifted);
         ends.x[k] = p.x, ends.y[k] = p.y, ends.z[k] = p.z;
     }
     return ends;

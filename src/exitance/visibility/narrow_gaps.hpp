@@ -15,19 +15,24 @@ namespace exitance {
 bool is_within(std::span<const Point> outline, const Plane& plane, double distance);
 
 /// Finds the faces that cross the space just above a region, like the other side of a sharp wedge near its edge. A ray
-/// from there that starts at the usual height above the region would start behind that face. Faces of which less than
-/// 2e-4 is below others are left out. The scene must outlive this object. Immutable; safe to share between threads.
-/// Memory O(gaps); O(faces log faces) to build.
+/// from there that starts at the usual height above the region would start behind that face. Also finds the faces that
+/// are stacked on a region and face the same way, like a rug on a floor: no ray leaves the places below them. Faces of
+/// which less than 2e-4 is below others are left out. The scene must outlive this object. Immutable; safe to share
+/// between threads. Memory O(gaps); O(faces log faces) to build.
 class NarrowGaps {
   public:
     /// reach  height above each region up to which faces are found, metres; one value per region
-    NarrowGaps(const Scene& scene, const Field<RegionId, double>& reach);
+    /// raised  height by which rays meet each region above its plane (Region::level), metres; one value per region
+    NarrowGaps(const Scene& scene, const Field<RegionId, double>& reach, const Field<RegionId, double>& raised);
 
     /// True if any face crosses the space above the region.
     bool has(RegionId own) const { return !own.is_none() && has_gap_.size() > 0 && has_gap_[own] != 0; }
 
+    /// Returns a face that is stacked on the region at its point x and faces the same way; none if there is none.
+    SurfaceId cover(const Point& x, RegionId own) const;
+
     /// Height of the lowest face above the point x of region `own`, along the region's normal, metres; infinite if
-    /// there is none within reach. About 0.1 us.
+    /// there is none within reach. Stacked faces do not count. About 0.1 us.
     double height(const Point& x, RegionId own) const;
 
     struct Met {
@@ -45,13 +50,17 @@ class NarrowGaps {
     struct Gap {
         RegionId own;
         SurfaceId above;
+        bool is_stacked;
     };
+    /// Calls visit(face) for the faces above a region whose box contains the point below them.
     template <class Visit>
-    void visit(const Point& x, RegionId own, const Visit& visit) const;
+    void visit(const Point& x, RegionId own, bool are_stacked, const Visit& visit) const;
+
+    Plane raised_plane(SurfaceId s) const;
 
     const Scene* scene_;
     double rounding_;  ///< Metres: faces nearer than this to a point touch it.
-    Field<RegionId, double> reach_;
+    Field<RegionId, double> reach_, raised_;
     Field<RegionId, char> has_gap_;  ///< 1 for regions with gaps; empty if there are none.
     std::vector<Gap> gaps_;          ///< In the order of the tree's items.
     Bvh tree_;                       ///< Boxes of the points below the faces.

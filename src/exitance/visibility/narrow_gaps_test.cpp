@@ -32,6 +32,12 @@ Wedge make_wedge(double angle, const Normal& up, const Point& apex, double scale
             frame, apex, scale};
 }
 
+/// Gaps of a scene none of whose faces is raised.
+NarrowGaps gaps_up_to(double height, const Scene& scene) {
+    const std::size_t regions = scene.regions().size();
+    return {scene, Field<RegionId, double>(regions, height), Field<RegionId, double>(regions, 0)};
+}
+
 TEST(NarrowGaps, RaysFromPointsNearAnEdgeMeetTheOtherSideOfTheWedge) {
     struct Place {
         Point apex;
@@ -79,9 +85,7 @@ TEST(NarrowGaps, RaysFromPointsNearAnEdgeMeetTheOtherSideOfTheWedge) {
 
 TEST(NarrowGaps, RoomsOfRightAnglesHaveNone) {
     const Scene scene = test::make(test::closed_box({0.1, 0.2, 0.3}, {3, 4, 2.5}));
-    Field<RegionId, double> reach;
-    for (std::size_t r = 0; r < scene.regions().size(); ++r) reach.add(1e-5);
-    const NarrowGaps gaps(scene, reach);
+    const NarrowGaps gaps = gaps_up_to(1e-5, scene);
     for (RegionId r : scene.regions().ids()) EXPECT_FALSE(gaps.has(r));
 }
 
@@ -100,22 +104,67 @@ TEST(NarrowGaps, SheetsInRoomsHaveNoneHoweverTheRoomIsRotated) {
         for (test::Face& face : rotated)
             for (Point& p : face.corners) p = Point{61, -53, 59} + frame.to_world(p.x, p.y, p.z);
         const Scene scene = test::make(rotated);
-        Field<RegionId, double> reach;
-        for (std::size_t r = 0; r < scene.regions().size(); ++r) reach.add(2.5e-5);
-        const NarrowGaps gaps(scene, reach);
+        const NarrowGaps gaps = gaps_up_to(2.5e-5, scene);
         for (RegionId r : scene.regions().ids()) EXPECT_FALSE(gaps.has(r));
     }
 }
 
 TEST(NarrowGaps, HeightIsThatOfTheFaceAbove) {
     const Wedge wedge = make_wedge(0.1, {0, 0, 1}, {}, 1);
-    Field<RegionId, double> reach;
-    for (std::size_t r = 0; r < wedge.scene.regions().size(); ++r) reach.add(1e-4);
-    const NarrowGaps gaps(wedge.scene, reach);
+    const NarrowGaps gaps = gaps_up_to(1e-4, wedge.scene);
     const RegionId own = wedge.scene.surfaces()[SurfaceId(0)].region;
     const Vec3 across = wedge.frame.to_world(0, 1, 0), along = wedge.frame.to_world(0.05, 0, 0);
     EXPECT_NEAR(gaps.height(along + 5e-4 * across, own), 5e-4 * std::tan(0.1), 1e-12);
     EXPECT_EQ(gaps.height(along + 0.05 * across, own), HUGE_VAL);
+}
+
+/// A floor of 4 x 3, with rugs of 2 x 2 and 1 x 1 on it, each `step` above the one before; the larger one is moved
+/// by `aside`, times `scale`.
+Scene floor_with_rugs(double step, double aside, const Frame& frame, const Point& origin, double scale) {
+    const auto rectangle = [&](double x, double y, double width, double depth, double z) {
+        const auto at = [&](double u, double v) { return origin + scale * frame.to_world(u, v, z); };
+        return test::Face{{at(x, y), at(x + width, y), at(x + width, y + depth), at(x, y + depth)}};
+    };
+    return test::make(
+        {rectangle(0, 0, 4, 3, 0), rectangle(1 + aside, 0.5, 2, 2, step), rectangle(1.5, 1, 1, 1, 2 * step)});
+}
+
+// Heights: in one plane, and in the plane up to rounding; nearer and farther than the usual start of rays.
+TEST(NarrowGaps, NoRayLeavesOrReachesPlacesBelowAFaceThatIsStackedOnThem) {
+    for (const double step : {0.0, 1e-9, 1e-7, 2e-6, 2e-5})
+        for (const Normal& up : {Normal{0, 0, 1}, normalized(Vec3{0.3, -0.5, 0.7})})
+            for (const double scale : {1e-3, 1.0, 1e3}) {
+                const Frame frame(up);
+                const Point origin = Point{} + scale * Vec3{7, -5, 3};
+                const Scene scene = floor_with_rugs(step, 0.25, frame, origin, scale);
+                const RayTracer tracer(scene);
+                const auto region = [&](std::size_t face) { return scene.surfaces()[SurfaceId(face)].region; };
+                const auto is_shut = [&](double x, double y, RegionId own) {
+                    const double height = static_cast<double>(own.value) * step;
+                    const Point at = origin + scale * frame.to_world(x, y, height), far = at + scale * up;
+                    const Vec3 away = scale * frame.to_world(0.2, -0.1, 1);
+                    RayHit hit;
+                    tracer.nearest({&away, 1}, at, own, {&hit, 1});
+                    bool from = false, to = false;
+                    tracer.occluded({&at, 1}, {&far, 1}, own, RegionId(), {&from, 1});
+                    tracer.occluded({&far, 1}, {&at, 1}, RegionId(), own, {&to, 1});
+                    const std::vector<Point> low(RayEnds::size, at), high(RayEnds::size, far);
+                    const bool prepared =
+                        tracer.occluded(tracer.ray_ends(low, own), tracer.ray_ends(high, RegionId())) != 0;
+                    EXPECT_EQ(from, !hit.surface.is_none()) << step << " " << x;
+                    EXPECT_EQ(to, from) << step << " " << x;
+                    EXPECT_EQ(prepared, from) << step << " " << x;
+                    EXPECT_FALSE(hit.front);
+                    return from;
+                };
+                EXPECT_FALSE(is_shut(0.7, 0.7, region(0))) << step;
+                EXPECT_FALSE(is_shut(1.2, 1.5, region(0))) << step << ": beside the rug";
+                EXPECT_TRUE(is_shut(2.9, 0.8, region(0))) << step;
+                EXPECT_TRUE(is_shut(1.6, 1.5, region(0))) << step << ": below both rugs";
+                EXPECT_FALSE(is_shut(2.9, 0.8, region(1))) << step;
+                EXPECT_TRUE(is_shut(1.6, 1.5, region(1))) << step;
+                EXPECT_FALSE(is_shut(1.6, 1.5, region(2))) << step;
+            }
 }
 
 }  // namespace

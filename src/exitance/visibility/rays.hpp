@@ -95,6 +95,9 @@ class RayTracer {
 
     std::size_t triangle_count() const;
 
+    /// Faces of planes in which faces have both orientations (`OpposedFaces`).
+    std::span<const SurfaceId> opposed_faces() const;
+
   private:
     struct Content;
     std::unique_ptr<const Content> content_;

@@ -23,8 +23,7 @@ Triangles TracedScene::surfaces(std::vector<SurfaceId>& surface_of) const {
         if (is_second_side(*scene, other_side, id)) continue;  // one triangle represents both faces
         const std::span<const Point> outline = scene->outline(id);
         const auto first = static_cast<std::uint32_t>(out.corners.size());
-        const Region& region = scene->regions()[faces[id].region];
-        const Vec3 lifted = (stack_step * scene->size() * region.level) * faces[id].normal;
+        const Vec3 lifted = raised(faces[id].region) * faces[id].normal;
         for (const Point& p : outline) out.corners.push_back(local(p + lifted));
         for (const auto& t : triangulate(outline, scene->surfaces()[id].normal)) {
             out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
@@ -48,14 +47,13 @@ Triangles TracedScene::panes(std::vector<std::uint32_t>& pane_of) const {
     return out;
 }
 
-Field<RegionId, double> TracedScene::reach_of_regions() const {
+NarrowGaps TracedScene::narrow_gaps() const {
     // A share of the height at which rays start: the start and a face must not be the same in single precision, which
     // has an error of a sixteenth of `lift`. Derived from 1 + 1 / 16, with a margin.
     constexpr double gap_reach = 1.25;
-    Field<RegionId, double> reach;
-    for (const Region& region : scene->regions())
-        reach.add(gap_reach * (lift_off + stack_step * scene->size() * region.level));
-    return reach;
+    Field<RegionId, double> reach, raised_by;
+    for (RegionId r : scene->regions().ids()) reach.add(gap_reach * (lift_off + raised(r))), raised_by.add(raised(r));
+    return {*scene, reach, raised_by};
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exitance/scene/opposed_faces.hpp"
+#include "exitance/visibility/narrow_gaps.hpp"
 #include "exitance/visibility/rays.hpp"
 #include "exitance/visibility/tracing_frame.hpp"
 
@@ -80,11 +81,12 @@ struct TracedScene {
     /// Vector by which the ends of rays on a region are lifted off it, metres.
     Vec3 offset(RegionId region) const {
         if (region.is_none()) return Vec3();
-        const Region& own = scene->regions()[region];
-        return (lift_off + stack_step * scene->size() * own.level) * own.plane.n;
+        return (lift_off + raised(region)) * scene->regions()[region].plane.n;
     }
-    /// Height above each region up to which faces are found that are close to it (NarrowGaps), metres.
-    Field<RegionId, double> reach_of_regions() const;
+    /// Height above its plane at which rays meet a region, because it is on top of others there, metres.
+    double raised(RegionId region) const { return stack_step * scene->size() * scene->regions()[region].level; }
+    /// Faces that are closer to a region than the usual start of rays.
+    NarrowGaps narrow_gaps() const;
 
     const Scene* scene;
     Point centre;        ///< Origin of the tracer's coordinates.

@@ -67,7 +67,7 @@ struct LoadedScene : CheckedScene {
 };
 
 /// Reads and checks the files of one scene, in the given order. Radiance files share their material names and are read
-/// at the position of the first of them. Of coplanar faces, the later one is on top.
+/// at the position of the first of them. Of coplanar faces the later one is on top, or one that emits light.
 /// Errors as for the overload below.
 LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options);
 
