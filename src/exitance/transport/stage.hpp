@@ -13,6 +13,7 @@
 #include "exitance/visibility/glass/glass_colours.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/rays.hpp"
+#include "exitance/visibility/thin_walls.hpp"
 
 namespace exitance {
 
@@ -28,6 +29,7 @@ struct Stage {
           occluders(s),
           direct(s, occluders),
           place_light(direct, tracer) {
+        occluders.set_thin_walls(find_thin_walls(occluders, tracer));
         set_unlit_sides({});
     }
     Stage(const Stage&) = delete;

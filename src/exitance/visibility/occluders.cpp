@@ -209,7 +209,7 @@ bool Occluders::is_covered(const Point& place, const Normal& n, RegionId own) co
         if (std::abs(height) > piece.thickness || std::abs(facing) < parallel_cosine) return false;
         if (facing > 0 && height <= rounding_) return false;
         if (!contains(corners(p), piece.plane.n, x) || !is_stacked_on(*this, p, {n, dot(n, x)}, own)) return false;
-        return facing > 0 || own.is_none() || !is_back_of(own, piece.region);
+        return facing > 0 || own.is_none() || !(is_back_of(own, piece.region) || is_thin_wall(own, piece.region));
     };
     for (const Tree* tree : {&trees_[0], &trees_[1], &outer_})
         if (tree->bvh.visit_box(near, [&](std::uint32_t i) { return covers(tree->pieces[i]); })) return true;

@@ -101,9 +101,12 @@ class Occluders {
     double rounding() const { return rounding_; }
 
     /// Returns whether another surface covers the point x of region `own`, so that no light can reach it. The other
-    /// side of a sheet does not cover it if both outlines are equal. A surface that faces the same way covers x only if
+    /// side of a sheet or of a thin wall does not cover it. A surface that faces the same way covers x only if
     /// it is above x by more than rounding; of two surfaces in the same plane neither covers the other.
     bool is_covered(const Point& x, const Normal& n, RegionId own) const;
+
+    /// Sets the walls without thickness (`find_thin_walls`); none are known before.
+    void set_thin_walls(std::vector<std::pair<RegionId, RegionId>> sorted) { thin_walls_ = std::move(sorted); }
 
     std::size_t memory_bytes() const;
     /// Calls visit(span) for the arrays that hold most of the memory.
@@ -121,11 +124,16 @@ class Occluders {
     std::vector<std::uint8_t> find_outer() const;
     void add_piece(std::span<const Point> corners, RegionId region, SurfaceId surface, const Plane& plane);
     bool is_back_of(RegionId a, RegionId b) const;
+    bool is_thin_wall(RegionId a, RegionId b) const {
+        return !thin_walls_.empty() &&
+               std::binary_search(thin_walls_.begin(), thin_walls_.end(), std::pair(std::min(a, b), std::max(a, b)));
+    }
 
     const Scene* scene_;
     Field<PieceId, ConvexPiece> pieces_;
     Field<RegionId, IdRange<PieceId>> of_region_;
     std::vector<Point> corners_;
+    std::vector<std::pair<RegionId, RegionId>> thin_walls_;  ///< Sorted; the smaller id first.
     Field<RegionId, RegionId> other_side_;  ///< Other side of each sheet; empty if no region is a side of a sheet.
     struct Tree {
         std::vector<PieceId> pieces;
