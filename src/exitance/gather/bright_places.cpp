@@ -10,7 +10,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_cells = 12;  ///< Parallelograms of a room: every ray is compared with all of them.
+constexpr std::size_t max_cells = 12;  ///< Rectangles in the planes of bright surfaces, in a room.
+constexpr std::size_t max_boxes = 16;  ///< Boxes around bright surfaces, in a room.
 
 /// A leaf that is bright for its room, in the plane coordinates of its region.
 struct BrightLeaf {
@@ -26,13 +27,14 @@ struct Cover {
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
     double filled = 0;  ///< Area of the leaves, m^2.
     double flux = 0;    ///< Sum of area times light of the leaves.
+    double square = 0;  ///< Sum of area times the square of light.
 
     void add(const BrightLeaf& leaf) {
         for (int i = 0; i < leaf.corner_count; ++i) {
             const Vec2 p = leaf.corners[static_cast<std::size_t>(i)];
             lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)}, hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
         }
-        filled += leaf.area, flux += leaf.area * leaf.light;
+        filled += leaf.area, flux += leaf.area * leaf.light, square += leaf.area * leaf.light * leaf.light;
         leaves.push_back(leaf);
     }
     double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
@@ -68,8 +70,8 @@ struct PlacedCover {
 
 /// Light of the leaves of one room.
 struct RoomLight {
-    double area = 0, flux = 0, square = 0;  ///< Sums of area, area b and area b^2.
-    double bright_square = 0;
+    double area = 0, flux = 0, square = 0;              ///< Sums of area, area b and area b^2.
+    double bright_square = 0;                           ///< The last one over bright leaves.
     std::map<RegionId, std::vector<ElementId>> bright;  ///< Listed by region, in the order of regions.
 };
 
@@ -100,7 +102,7 @@ PlacedCover cover_region(const Stage& stage, const ElementTree& tree, RegionId r
 }
 
 /// Divides the cover with the largest waste until there are enough.
-std::vector<PortalCell> divide(std::vector<PlacedCover> covers) {
+void divide(std::vector<PlacedCover>& covers) {
     while (!covers.empty() && covers.size() < max_cells) {
         const auto worst = std::max_element(covers.begin(), covers.end(), [](const auto& a, const auto& b) {
             return a.cover.waste() < b.cover.waste();
@@ -113,8 +115,110 @@ std::vector<PortalCell> divide(std::vector<PlacedCover> covers) {
         worst->cover = std::move(one);
         covers.push_back(std::move(second));
     }
+}
+
+/// A box around bright leaves of many planes, like the inside of a lamp's reflector: every ray to them passes through
+/// its sides.
+struct BrightBox {
+    std::vector<ElementId> leaves;
+    Box box;
+    double flux = 0, square = 0;  ///< Sums of area times light and of area times its square.
+
+    void add(const ElementTree& tree, ElementId e, double light) {
+        const Patch& patch = tree.patch(e);
+        for (int i = 0; i < patch.corner_count(); ++i) box.add(patch.corner(i));
+        const double area = tree.area(e);
+        flux += area * light, square += area * light * light;
+        leaves.push_back(e);
+    }
+    /// Sides of the box, or one rectangle if it is flat.
+    std::vector<PortalCell> sides() const {
+        constexpr double flat = 1e-3;  // share of the longest edge; derived from sides that no ray would be aimed at
+        const Vec3 size = box.hi - box.lo;
+        const double longest = std::max({size.x, size.y, size.z});
+        std::vector<PortalCell> out;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+            if (std::min(size[i], size[j]) < flat * longest) continue;
+            PortalCell side{box.lo, {}, {}, Normal{0, 0, 0}, size[i] * size[j], 0};
+            side.u[i] = size[i], side.v[j] = size[j], side.n[k] = 1;
+            out.push_back(side);
+            if (size[k] < flat * longest) continue;
+            side.corner[k] = box.hi[k];
+            out.push_back(side);
+        }
+        for (PortalCell& side : out) side.light = flux / shown();
+        return out;
+    }
+    /// Mean area of the box as seen from all around, times four, m^2.
+    double shown() const {
+        const Vec3 size = box.hi - box.lo;
+        return size.x * size.y + size.y * size.z + size.z * size.x;
+    }
+    /// Measure of the noise, twice that of a rectangle of the area shown: every ray passes through two sides.
+    double noise() const { return 2 * std::sqrt(shown() * square); }
+    std::array<BrightBox, 2> halves(const ElementTree& tree, const Field<ElementId, double>& light) const {
+        const Vec3 size = box.hi - box.lo;
+        const std::size_t k = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+        const double middle = 0.5 * (box.lo[k] + box.hi[k]);
+        std::array<BrightBox, 2> out;
+        for (ElementId e : leaves) out[tree.patch(e).at(tree.centre(e))[k] > middle].add(tree, e, light[e]);
+        return out;
+    }
+};
+
+/// Surrounds the bright leaves of a room by boxes, which are divided while that lowers the noise of aimed rays.
+std::vector<BrightBox> boxes_around(const ElementTree& tree, const RoomLight& room,
+                                    const Field<ElementId, double>& light) {
+    std::vector<BrightBox> open(1), out;
+    for (const auto& [region, leaves] : room.bright)
+        for (ElementId e : leaves) open[0].add(tree, e, light[e]);
+    while (!open.empty()) {
+        const auto worst = std::max_element(
+            open.begin(), open.end(), [](const BrightBox& a, const BrightBox& b) { return a.noise() < b.noise(); });
+        BrightBox box = std::move(*worst);
+        open.erase(worst);
+        if (open.size() + out.size() + 2 <= max_boxes) {
+            std::array<BrightBox, 2> halves = box.halves(tree, light);
+            // Boxes that are much smaller than the space between them are worth the comparisons with each ray.
+            constexpr double worth = 0.7;  // derived from halves of a box that its leaves fill evenly, which have more
+            if (halves[0].noise() + halves[1].noise() < worth * box.noise()) {
+                for (BrightBox& half : halves) open.push_back(std::move(half));
+                continue;
+            }
+        }
+        out.push_back(std::move(box));
+    }
+    return out;
+}
+
+/// Returns the parallelograms that cover the bright leaves of a room. Noise is compared by its standard deviation if
+/// rays are shared out best: the sum over parallelograms of the root of area times sum of squares.
+std::vector<PortalCell> cells_of_room(const Stage& stage, const ElementTree& tree, const RoomLight& room,
+                                      const Field<ElementId, double>& light) {
+    std::vector<PlacedCover> covers;
+    for (const auto& [region, of_region] : room.bright)
+        covers.push_back(cover_region(stage, tree, region, of_region, light));
+    std::stable_sort(covers.begin(), covers.end(), [](const PlacedCover& a, const PlacedCover& c) {
+        return a.cover.flux * a.cover.flux / a.cover.filled > c.cover.flux * c.cover.flux / c.cover.filled;
+    });
+    double missed = 0, noise = 0;
+    for (std::size_t i = max_cells; i < covers.size(); ++i) missed += covers[i].cover.square;
+    if (covers.size() > max_cells) covers.resize(max_cells);
+    divide(covers);
     std::vector<PortalCell> out;
-    for (const PlacedCover& cover : covers) out.push_back(cover.cell());
+    for (const PlacedCover& cover : covers) {
+        out.push_back(cover.cell());
+        noise += std::sqrt(cover.cover.area() * cover.cover.square);
+    }
+    noise += std::sqrt(room.area * missed);
+    const std::vector<BrightBox> boxes = boxes_around(tree, room, light);
+    double noise_of_boxes = 0;
+    for (const BrightBox& box : boxes) noise_of_boxes += box.noise();
+    if (noise_of_boxes >= noise) return out;
+    out.clear();
+    for (const BrightBox& box : boxes)
+        for (const PortalCell& side : box.sides()) out.push_back(side);
     return out;
 }
 
@@ -175,14 +279,7 @@ BrightPlaces find_bright_places(const Stage& stage, const ElementTree& tree, con
             out[r].assign(cells.begin(), cells.end());
         }
         if (rooms[r].bright_square <= 0.5 * rooms[r].square) continue;
-        std::vector<PlacedCover> covers;
-        for (const auto& [region, of_region] : rooms[r].bright)
-            covers.push_back(cover_region(stage, tree, region, of_region, light));
-        std::stable_sort(covers.begin(), covers.end(), [](const PlacedCover& a, const PlacedCover& c) {
-            return a.cover.flux * a.cover.flux / a.cover.filled > c.cover.flux * c.cover.flux / c.cover.filled;
-        });
-        if (covers.size() > max_cells) covers.resize(max_cells);
-        for (const PortalCell& cell : divide(std::move(covers))) out[r].push_back(cell);
+        for (const PortalCell& cell : cells_of_room(stage, tree, rooms[r], light)) out[r].push_back(cell);
     }
     return BrightPlaces(std::move(out));
 }

@@ -65,6 +65,58 @@ TEST(BrightPlaces, AreCoveredAndLeaveTheExpectedLight) {
     EXPECT_LT(aimed_spread, spread / 20);
 }
 
+/// The inside of a reflector of 24 facets, 0.3 m wide and open at the bottom, in a room of 4 x 4 x 3 m that reflects
+/// 1 W/m^2.
+struct RoomWithReflector {
+    static constexpr double bright = 1000;
+    Scene scene;
+    Stage stage{scene};
+    ElementTree tree = stage.make_elements({.edge = 0.2});
+    PointwiseLight b{[](RegionId, const Point& y) {
+        return Spectrum(std::hypot(y.x - 2, y.y - 2) < 0.2 && y.z > 1.5 && y.z < 2.5 ? bright : 1);
+    }};
+
+    explicit RoomWithReflector(double turn) : scene(faces(turn)) {}
+    static Scene faces(double turn) {
+        std::vector<test::Face> out = test::closed_box({0, 0, 0}, {4, 4, 3});
+        constexpr int count = 24;
+        for (int i = 0; i < count; ++i) {
+            const auto at = [&](int k, double radius, double z) {
+                const double angle = turn + 2 * pi * k / count;
+                return Point{2 + radius * std::cos(angle), 2 + radius * std::sin(angle), z};
+            };
+            out.push_back({{at(i + 1, 0.15, 2), at(i, 0.15, 2), at(i, 0.05, 2.3), at(i + 1, 0.05, 2.3)}});
+        }
+        return test::make(out);
+    }
+};
+
+TEST(BrightPlaces, AReflectorOfManyFacetsIsCoveredByABox) {
+    for (const double turn : {0.0, 0.1}) {
+        RoomWithReflector room(turn);
+        const BrightPlaces bright = find_bright_places(room.stage, room.tree, room.b);
+        ASSERT_FALSE(bright.of_room(0).empty());
+        GatherWorkspace workspace;
+        const RegionId floor = room.scene.surfaces()[SurfaceId(0)].region;
+        constexpr unsigned count = 400;
+        const auto gathered = [&] {
+            double sum = 0, square = 0;
+            for (unsigned k = 0; k < count; ++k) {
+                const double E = mean(
+                    gather_reflected(room.stage, {2.3, 2.2, 0}, {0, 0, 1}, floor, 64, k, room.b, workspace).irradiance);
+                sum += E, square += E * E;
+            }
+            return std::pair(sum / count, square / count - sum * sum / count / count);
+        };
+        const auto [without, spread] = gathered();
+        room.b.aim_at(bright);
+        const auto [aimed, aimed_spread] = gathered();
+        EXPECT_NEAR(aimed, without, 4 * std::sqrt((spread + aimed_spread) / count));
+        // Of 64 rays, 0.4 meet the reflector by chance. A third of the aimed ones do.
+        EXPECT_LT(aimed_spread, spread / 10);
+    }
+}
+
 TEST(BrightPlaces, EvenLightHasNone) {
     const PatchedBox box(3);
     EXPECT_TRUE(box.bright.of_room(0).empty());
