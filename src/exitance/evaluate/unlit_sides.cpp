@@ -34,14 +34,18 @@ struct Side {
     }
 };
 
-std::vector<Side> sides_of_sheets(const Stage& stage) {
+/// Sides of sheets, and other large regions. All others are usually lit, or too small to matter.
+std::vector<Side> sides_to_examine(const Stage& stage) {
+    constexpr double large =
+        0.05;  // share of all area; derived from errors, which 5% of the area changes by a fortieth
     const Field<RegionId, RegionId> other = other_sides_of_regions(stage.scene);
+    const auto is_sheet = [&](RegionId r) { return other.size() > 0 && !other[r].is_none(); };
     std::vector<Side> out;
-    if (other.size() == 0) return out;
     for (const Piece& piece : stage.pieces) {
         // Light from behind a diffusing pane counts as its own.
         if (!stage.scene.behind(piece.region).is_none()) continue;
-        if (other[piece.region].is_none() || stage.scene.material(piece.region).emits()) continue;
+        if (stage.scene.material(piece.region).emits()) continue;
+        if (!is_sheet(piece.region) && stage.scene.regions()[piece.region].area < large * stage.area) continue;
         if (out.empty() || out.back().region != piece.region) out.push_back({piece.region});
         out.back().pieces.push_back(&piece.patch);
         out.back().area += piece.patch.area();
@@ -204,7 +208,7 @@ void light_seen_sides(const Stage& stage, const std::vector<Side>& sides, std::u
 }  // namespace
 
 Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
-    const std::vector<Side> sides = sides_of_sheets(stage);
+    const std::vector<Side> sides = sides_to_examine(stage);
     if (sides.empty() || !stage.scene.has_light()) return {};
     // Paths of all sides together: about as many rays as a quick solve.
     constexpr double all = 1 << 18;

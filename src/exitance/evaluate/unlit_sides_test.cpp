@@ -75,9 +75,21 @@ TEST(UnlitSides, AreNotTheSidesThatSeeAPatchOfSun) {
     }
 }
 
-TEST(UnlitSides, AreFoundOnSheetsOnly) {
+TEST(UnlitSides, AreAlsoLargeRegionsThatAreNoSheets) {
     std::vector<Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
-    for (const Face& f : test::closed_box({3, 0, 0}, {1, 1, 1})) faces.push_back(f);
+    faces[0].exitance = 1;
+    faces.push_back({{{-20, -20, -1}, {20, -20, -1}, {20, 20, -1}, {-20, 20, -1}}});  // the ground, in the dark
+    faces.push_back({{{3, 3, 0}, {4, 3, 0}, {4, 4, 0}, {3, 4, 0}}});                  // dark, too, but small
+    const Scene scene = test::make(faces);
+    Stage stage(scene);
+    stage.set_unlit_sides(find_unlit_sides(stage, 1, StopRequest()));
+    for (SurfaceId s : scene.surfaces().ids())
+        EXPECT_EQ(stage.is_unlit(scene.surfaces()[s].region), s.value == 6) << s.value;
+    EXPECT_NEAR(stage.area, 7, 1e-9);
+}
+
+TEST(UnlitSides, AreNotTheFacesOfALitScene) {
+    std::vector<Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
     faces[0].exitance = 1;
     const Scene scene = test::make(faces);
     EXPECT_EQ(find_unlit_sides(Stage(scene), 1, StopRequest()).size(), 0u);
