@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "exitance/base/sanitizers.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "exitance/transport/stage.hpp"
@@ -126,6 +127,7 @@ TEST(DiffusingPanes, LightInADarkRoomAgreesWithPathTracing) {
     const std::vector<ReferenceLight> exact = reference_light(scene, places, 1 << 14, 1, progress, StopRequest());
     for (std::size_t i = 0; i < places.size(); ++i) EXPECT_GT(exact[i].irradiance[0], 0.01) << i;
     auto ways = all_methods(0.05);
+    if (has_address_sanitizer) ways.resize(1);  // TwoUniformRoomsStayUniform runs all methods
     ways.push_back({"auto", {.error = 0.02}});
     for (auto [name, options] : ways) {
         SCOPED_TRACE(name);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/base/sanitizers.hpp"
 #include "exitance/error/area_samples.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/solution/solution_file.hpp"
@@ -29,6 +30,11 @@ SceneDescription two_lamps() {
     return d;
 }
 
+/// Requested error of tests of accuracy. Tests run ten times as long with the address sanitizer, for which any light
+/// does.
+constexpr double fine = has_address_sanitizer ? 0.04 : 0.01;
+constexpr double coarse = 0.1;  ///< requested error of tests that do not depend on accuracy
+
 struct Lit {
     Solution solution;
     LightGroups groups;
@@ -51,15 +57,12 @@ Lit lit(double error, SceneDescription d = two_lamps()) {
 ReferencePoints new_solve(const Scene& changed) {
     Progress silent;
     const StopRequest stop;
-    const Result<Solution> fresh = solve_scene(changed, {.error = 0.005}, silent, stop);
+    const Result<Solution> fresh = solve_scene(changed, {.error = fine / 2}, silent, stop);
     EXPECT_TRUE(fresh);
     ReferencePoints reference{points_uniform_in_area(changed, 400, 3), {}, {}};
     reference.irradiance = irradiance_at(*fresh, reference.points);
     return reference;
 }
-
-constexpr double fine = 0.01;
-constexpr double coarse = 0.1;  ///< requested error of tests that do not depend on accuracy
 
 }  // namespace
 
@@ -99,11 +102,11 @@ TEST(LightGroupsOfTwoLamps, DimmedLightAgreesWithANewSolve) {
     ASSERT_TRUE(change_light(dim.solution, dim.groups, {.dim = {{"left", 0}, {"right", 0.5}}}));
     EXPECT_EQ(dim.solution.scene.emitters().size(), 1u);
     const double off = error_against(dim.solution, new_solve(dim.solution.scene)).relative_rms_error;
-    EXPECT_LT(off, 0.012);  // the requested error is 1%, and the reference has 0.5%
+    EXPECT_LT(off, 1.2 * fine);  // includes the reference's error of half as much
     ASSERT_TRUE(dim.solution.statistics.relative_error_estimate);
-    // The estimate is from some hundred points; the measured error includes 0.5% of the reference.
-    EXPECT_LT(off, 1.5 * *dim.solution.statistics.relative_error_estimate + 0.005);
-    EXPECT_LT(*dim.solution.statistics.relative_error_estimate, 3 * off + 0.005);
+    // The estimate is from some hundred points; the measured error includes that of the reference.
+    EXPECT_LT(off, 1.5 * *dim.solution.statistics.relative_error_estimate + fine / 2);
+    EXPECT_LT(*dim.solution.statistics.relative_error_estimate, 3 * off + fine / 2);
     ASSERT_TRUE(change_light(dim.solution, dim.groups, {.dim = {{"left", 1}, {"right", 1}}}));
     EXPECT_EQ(dim.solution.scene.emitters().size(), 2u);
     EXPECT_NEAR(dim.solution.indirect.values[0][0], whole.solution.indirect.values[0][0], 1e-4F);
@@ -115,9 +118,9 @@ TEST(LightGroupsOfTwoLamps, RepaintedLightAgreesWithANewSolve) {
     ASSERT_TRUE(change_light(painted.solution, painted.groups, {.reflectance = {{"side", Spectrum(0.8)}}}));
     const ReferencePoints exact = new_solve(painted.solution.scene);
     const double off = error_against(painted.solution, exact).relative_rms_error;
-    EXPECT_LT(off, 0.012);  // equal to the limit for dimming
+    EXPECT_LT(off, 1.2 * fine);  // equal to the limit for dimming
     ASSERT_TRUE(painted.solution.statistics.relative_error_estimate);
-    EXPECT_LT(off, 1.5 * *painted.solution.statistics.relative_error_estimate + 0.005);
+    EXPECT_LT(off, 1.5 * *painted.solution.statistics.relative_error_estimate + fine / 2);
     // Without repainting, the error would be about 8%.
     Lit left = whole;
     left.solution.scene = painted.solution.scene;
