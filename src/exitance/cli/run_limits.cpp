@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "exitance/base/available_memory.hpp"
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/processes/distributed.hpp"
 
@@ -69,14 +70,14 @@ StopReason RunLimits::reason() const {
 }
 
 Error RunLimits::error(const std::string& message) const {
-    return over_memory_ ? Error{ErrorCode::limit,
-                                fmt::format("{:.0f} MiB are in use, over the limit of {:.0f} MiB, and {}",
-                                            static_cast<double>(used_memory_bytes()) / 0x1p20,
-                                            static_cast<double>(*limits_.memory_limit) / 0x1p20, message),
-                                "--memory-limit", "raise the limit"}
-                        : Error{ErrorCode::limit,
-                                fmt::format("{:g} s have passed, and {}", limits_.time_limit.value_or(0), message),
-                                "--time-limit", "raise the limit"};
+    if (!over_memory_)
+        return {ErrorCode::limit, fmt::format("{:g} s have passed, and {}", limits_.time_limit.value_or(0), message),
+                "--time-limit", "raise the limit"};
+    const NumberTexts mib = distinct_texts(static_cast<double>(used_memory_bytes()) / 0x1p20,
+                                           static_cast<double>(*limits_.memory_limit) / 0x1p20);
+    return {ErrorCode::limit,
+            fmt::format("{} MiB are in use, over the limit of {} MiB, and {}", mib.first, mib.second, message),
+            "--memory-limit", "raise the limit"};
 }
 
 void RunLimits::watch_memory_of_several() {

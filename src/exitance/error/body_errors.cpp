@@ -95,8 +95,8 @@ class BodySurvey {
     std::vector<BodyMeasure> unmeasured_bodies() const;
     /// Chooses the parameters of the checks. `requested`: requested error, W/m^2.
     CheckPlan plan(std::span<const PilotPlace> at, std::uint64_t name, double requested) const {
-        // A body is measured by at least 8 x 16 rays: 16 checks miss a feature that a sixth of its view has once in
-        // twenty times.
+        // At least an eighth of the rays of a body, 16 of 128, are checked. A feature that fills a sixth of the body's
+        // view is missed by all 16 checks in one of twenty cases.
         constexpr double min_share = 1.0 / 8;
         return plan_check(c_.check, c_.stage, c_.b, at, name,
                           {.tolerated = certificate_rays(0) * requested * requested, .min_share = min_share});

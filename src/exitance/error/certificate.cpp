@@ -105,8 +105,8 @@ CheckPlan Certifier::Content::plan_checks_from(std::size_t room, std::span<const
                       places[k].weight,
                       static_cast<double>(rays)});
     }
-    // Noise as large as the requested error is acceptable, since that of hundreds of points is averaged. Sums have no
-    // other noise.
+    // The noise of a point may be as large as the requested error, since the certificate averages over hundreds of
+    // points. If the light is summed rather than sampled, these rays are the only noise.
     const double light_there = mean_reflected * (options.allowed_in.empty() ? 1 : options.allowed_in[room]);
     const double resolved = (options.summed ? 0.5 : 1) * options.error * light_there;
     const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);

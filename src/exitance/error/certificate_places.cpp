@@ -35,8 +35,8 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
                                               const CertificateOptions& options, std::uint64_t seed) {
     const Field<ElementId, LocalPassReport::Leaf>* const known = options.leaves;
     const std::vector<ElementId> leaves = tree.leaves();
-    // If rooms are judged separately, all get equally dense points, and errors are weighted by the allowed error of the
-    // room.
+    // If every room has its own allowed error, the points are equally dense in all rooms, and the error of a leaf is
+    // weighted by the allowed error of its room.
     struct Leaf {
         double counted, error;
     };

@@ -106,7 +106,8 @@ class Bounds {
         return depth_[i] > step_ ? Kind::falls : Kind::level;
     }
 
-    /// True if something is at the edge, at a height at which parapets and railings end, or a pane is.
+    /// True if a parapet, a railing or a pane is at the edge: something at the height at which these end, and behind it
+    /// a place to stand. Goods along the edge of a rack have no such place behind them.
     bool has_railing(const FloorCells::Edge& edge) const {
         constexpr double lowest = 0.5, highest = 1.25;             // metres; derived from parapets and railings
         constexpr double lowest_share = 0.2, highest_share = 0.5;  // of the height, derived from rooms of 2.5 m
@@ -120,9 +121,23 @@ class Bounds {
             from[k] = start - z * down, to[k] = edge.outer - z * down;
         }
         tracer_.occluded(from, to, RegionId(), RegionId(), blocked);
-        if (std::any_of(blocked.begin(), blocked.end(), [](bool b) { return b; })) return true;
+        for (std::size_t k = 0; k < rays; ++k)
+            if (blocked[k] && !is_in_body_behind(edge, from[k])) return true;
         return std::any_of(scene_.panes().begin(), scene_.panes().end(),
                            [&](const Pane& pane) { return crosses(pane, from.back(), to.back()); });
+    }
+
+    /// True if the point behind a place at an edge that is farther from the edge than parapets are thick is in a body.
+    bool is_in_body_behind(const FloorCells::Edge& edge, const Point& place) const {
+        constexpr double thickest = 0.6;         // metres; derived from parapets of stone, and racks of 0.8 m and more
+        constexpr double thickest_share = 0.24;  // of the height, derived from rooms of 2.5 m
+        constexpr double breadth_share = 0.75;   // of the part's breadth, derived from goods of a rack's whole depth
+        const double depth =
+            std::min({thickest, thickest_share * height_, breadth_share * storey_.parts()[part_].breadth});
+        const Vec3 inwards = normalized(edge.inner - edge.outer);
+        const Point behind = place + (depth - dot(place - edge.outer, inwards)) * inwards;
+        const RayHit above = hit(behind, -1 * down);
+        return !above.surface.is_none() && !above.front;
     }
 
     static bool crosses(const Pane& pane, const Point& p, const Point& q) {

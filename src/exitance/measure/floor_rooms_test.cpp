@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/measure/glare/room_observers.hpp"
@@ -234,6 +235,38 @@ TEST(FloorRooms, APlatformIsARoomIfItHasARailingOrStairs) {
         block.box({x, 10, 0}, {x + 0.28, 11.2, z}, "stairs");
     }
     EXPECT_EQ(floor_heights(block), (FloorHeights{0, 3}));
+}
+
+TEST(FloorRooms, GoodsAlongTheEdgesOfARackAreNoRailing) {
+    for (const double scale : {1.0, 0.1})
+        for (const double gap : {0.0, 0.3}) {
+            Builder b = hall(scale);
+            b.box({10, 10, 0}, {22, 11.2, 3}, "rack");
+            b.box({28, 10, 0}, {36, 14, 3}, "wide rack");
+            for (int i = 0; i < 10; ++i) b.box({10 + 1.2 * i, 10, 3}, {11.2 - gap + 1.2 * i, 11.2, 3.8}, "goods");
+            for (const double x : {28.0, 35.3}) b.box({x, 10, 3}, {x + 0.7, 14, 3.9}, "goods");
+            for (const double y : {10.0, 13.3}) b.box({28.7 + gap, y, 3}, {35.3 - gap, y + 0.7, 3.9}, "goods");
+            EXPECT_EQ(floor_heights(b, scale), FloorHeights{0}) << scale << ", gap " << gap;
+        }
+}
+
+TEST(FloorRooms, APlatformBehindAThickParapetOrASheetIsARoom) {
+    for (const double thickness : {0.1, 0.3, 0.5}) {
+        Builder b = hall();
+        add_slab(b, {20, 10, 2.8}, {26, 15, 3});
+        b.box({20, 10, 3}, {26, 10 + thickness, 4}, "parapet"), b.box({20, 15 - thickness, 3}, {26, 15, 4}, "parapet");
+        EXPECT_EQ(floor_heights(b), (FloorHeights{0, 3})) << thickness;
+    }
+    for (const bool inwards : {false, true}) {  // one-sided sheets with either face to the platform
+        Builder b = hall();
+        add_slab(b, {20, 10, 2.8}, {26, 15, 3});
+        for (const double y : {10.02, 14.98}) {
+            std::vector<Vec3> sheet{{20, y, 3}, {26, y, 3}, {26, y, 4}, {20, y, 4}};
+            if (inwards) std::reverse(sheet.begin(), sheet.end());
+            b.face(sheet, "sheet");
+        }
+        EXPECT_EQ(floor_heights(b), (FloorHeights{0, 3})) << inwards;
+    }
 }
 
 TEST(FloorRooms, APavilionBehindGlassIsARoom) {

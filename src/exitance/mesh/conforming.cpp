@@ -169,9 +169,9 @@ void PlaneNodes::find_hanging(std::span<const Side> sides, std::vector<std::uint
     }
 }
 
-/// All sides except those on the border of the surface, across which there is nothing to be discontinuous with. A
-/// border side matches no other side, has no hanging vertices, and its ends do not hang on other sides. The other side
-/// of a sheet would otherwise contribute an edge along each of them.
+/// Returns all sides except those on the border of the surface, which have no light beyond them and thus no
+/// discontinuity. A border side matches no other side, has no hanging vertices, and its ends do not hang on other
+/// sides. Border sides are left out because the back of a sheet would otherwise contribute an edge along each of them.
 std::vector<Side> PlaneNodes::inner_sides(std::span<const Side> open, std::span<const Hanging> found) const {
     std::vector<std::uint32_t> hanging;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> stood_on, border;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/scene/findings.hpp"
@@ -48,10 +49,11 @@ std::string reason_and_remedy(const SolveStatistics& statistics, const SolveOpti
                     "another attempt would take far longer than the {:.3g} s that are left of the time limit; request "
                     "a larger --error",
                     left);
+            const NumberTexts seconds = distinct_texts(next->second, left);
             return fmt::format(
-                "another attempt would take about {:.3g} s, but {:.3g} s are left of the time limit; allow about "
-                "{:.0f} s more, or request a larger --error",
-                next->second, left, std::ceil(next->second - left));
+                "another attempt would take about {} s, but {} s are left of the time limit; allow about {:.0f} s "
+                "more, or request a larger --error",
+                seconds.first, seconds.second, std::ceil(next->second - left));
         }
         case StopReason::memory_limit:
             return "the memory limit ended the solve; allow more memory, or request a larger --error";
@@ -84,10 +86,11 @@ std::optional<std::string> message_of_early_end(const SolveStatistics& statistic
     const std::string of_room = statistics.rooms.size() > 1 && room > whole
                                     ? fmt::format(" in the worst room, {:.3g}% in all", 100 * whole)
                                     : "";
-    const std::string found = fmt::format("the estimated error is {:.3g}%{}", 100 * error, of_room);
-    if (error > *requested) return fmt::format("{}, but {:.3g}% was requested: {}", found, 100 * *requested, reason);
-    return fmt::format("{}, but it is not certain that all rooms and bodies are within the requested {:.3g}%: {}",
-                       found, 100 * *requested, reason);
+    const NumberTexts percents = distinct_percents(error, *requested);
+    const std::string found = fmt::format("the estimated error is {}%{}", percents.first, of_room);
+    if (error > *requested) return fmt::format("{}, but {}% was requested: {}", found, percents.second, reason);
+    return fmt::format("{}, but it is not certain that all rooms and bodies are within the requested {}%: {}", found,
+                       percents.second, reason);
 }
 
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,

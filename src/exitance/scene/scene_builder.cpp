@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/scene/joining/hash_chains.hpp"
 #include "exitance/scene/joining/outline.hpp"
@@ -27,6 +28,10 @@ Tolerances tolerances(const Box& box, double short_edge) {
 constexpr std::size_t max_corners = 10'000;  ///< Maximum per face, since the time of triangulation is quadratic in it.
 constexpr double max_coordinate = 1e15;      ///< Metres from the origin: powers of areas stay finite.
 constexpr double max_exitance = 1e30;        ///< W/m^2, cd, lx: light is accumulated in float, whose maximum is 3e38.
+/// Metres; measured by solving closed boxes: view factors are inaccurate from 1e-15 m on, and areas vanish below.
+constexpr double min_size = 1e-12;
+/// W/m^2, cd, lx; derived from float, whose smallest accurate number is 1.2e-38: weaker light would be lost.
+constexpr double min_brightness = 1e-30;
 
 bool is_near(const Point& p) {
     return std::abs(p.x) <= max_coordinate && std::abs(p.y) <= max_coordinate && std::abs(p.z) <= max_coordinate;
@@ -70,10 +75,13 @@ void SceneBuilder::check_materials() {
         for (std::size_t b = 0; b < bands; ++b) {
             if (!(m.reflectance[b] >= 0 && m.reflectance[b] < 1))
                 error(0,
-                      fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
+                      fmt::format("material '{}' has reflectance {} in band {}", m.name,
+                                  distinct_texts(m.reflectance[b], 1, 6).first, band(b)),
                       "reflectances lie in [0, 1): at 1 reflections would never fade");
             if (!(m.exitance[b] >= 0 && m.exitance[b] <= max_exitance))
-                error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
+                error(0,
+                      fmt::format("material '{}' has exitance {} in band {}", m.name,
+                                  distinct_texts(m.exitance[b], max_exitance, 6).first, band(b)),
                       fmt::format("emission is not negative, and at most {:g} W/m^2", max_exitance));
         }
     }
@@ -135,6 +143,11 @@ void SceneBuilder::place_corners() {
             before = &p;
         }
     }
+    const Vec3 extent = box_.size();
+    const double size = std::max({extent.x, extent.y, extent.z});
+    if (size > 0 && size < min_size)
+        error(0, fmt::format("the scene is only {:.4g} m large", size),
+              fmt::format("scale it: scenes of {:g} m or more are supported", min_size));
     if (is_sky_alone()) box_.add(Point{-0.5, -0.5, -0.5}), box_.add(Point{0.5, 0.5, 0.5});
     constexpr std::size_t one_in = 100;
     const auto percentile = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / one_in);
@@ -274,14 +287,16 @@ void SceneBuilder::turn_bodies() {
 }
 
 void SceneBuilder::check_light() {
-    const auto shines = [](const auto& l) { return max(l.irradiance) > 0; };
-    const bool lit =
-        std::any_of(in_.distant.domes.begin(), in_.distant.domes.end(), shines) ||
-        std::any_of(in_.distant.discs.begin(), in_.distant.discs.end(), shines) ||
-        std::any_of(in_.lights.begin(), in_.lights.end(), [](const auto& l) { return max(l.intensity) > 0; }) ||
-        std::any_of(origin_.begin(), origin_.end(),
-                    [&](std::uint32_t f) { return in_.materials[in_.faces[f].material].emits(); });
-    if (!lit)
+    double brightest = 0;
+    for (const DistantLight::Dome& dome : in_.distant.domes) brightest = std::max(brightest, max(dome.irradiance));
+    for (const DistantLight::Disc& disc : in_.distant.discs) brightest = std::max(brightest, max(disc.irradiance));
+    for (const PunctualLight& light : in_.lights) brightest = std::max(brightest, max(light.intensity));
+    for (const std::uint32_t f : origin_)
+        brightest = std::max(brightest, max(in_.materials[in_.faces[f].material].exitance));
+    if (brightest > 0 && brightest < min_brightness)
+        error(0, fmt::format("the brightest light of the scene is only {:.4g} W/m^2 (or cd, lx)", brightest),
+              fmt::format("scale the light: {:g} or more is supported", min_brightness));
+    if (brightest == 0)
         find(Finding::Kind::warning, in_.faces.empty() ? 0 : in_.faces[0].line,
              "nothing emits light: all results are 0",
              "give a material an emission (in MTL: Ke r g b), or the scene a sky (solve --sky)");

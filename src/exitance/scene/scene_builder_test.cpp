@@ -343,6 +343,22 @@ TEST(Checks, ScenesMayBeTinyHugeAndFarAway) {
         }
 }
 
+TEST(Checks, ScenesAndLightTooSmallForTheNumbersAreErrors) {
+    const auto scaled = [](double size, double light) {
+        Sketch sketch = Sketch().rectangle(0, 0, 1, 2).rectangle(1, 0, 2, 1).light();
+        for (Point& p : sketch.d.points) p = size * p;
+        for (double& band : sketch.d.materials[1].exitance.value) band *= light;
+        const auto s = sketch.make();
+        return s.scene ? std::string() : s.scene.error().message;
+    };
+    for (const double size : {1e-14, 1e-20, 1e-100, 1e-200, 1e-310})
+        EXPECT_NE(scaled(size, 1).find("m large"), std::string::npos) << size << ": " << scaled(size, 1);
+    for (const double light : {1e-35, 1e-100, 1e-200, 1e-310})
+        EXPECT_NE(scaled(1, light).find("the brightest light"), std::string::npos) << light << ": " << scaled(1, light);
+    EXPECT_EQ(scaled(1e-11, 1e-25), "");
+    EXPECT_EQ(scaled(1, 0), "");
+}
+
 TEST(Checks, AFarHorizonDoesNotMergeNearPoints) {
     Sketch sketch;
     sketch.add({{-1e7, -1e7, -1}, {1e7, -1e7, -1}, {1e7, 1e7, -1}, {-1e7, 1e7, -1}}, 2).light();

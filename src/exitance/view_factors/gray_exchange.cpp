@@ -1,4 +1,5 @@
 #include "exitance/view_factors/gray_exchange.hpp"
+#include "exitance/base/distinct_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double tolerance = 1e-12;      ///< Limit on the relative residual, derived from double precision.
 constexpr double max_temperature = 1e5;  ///< K; hotter surfaces are mistakes, derived from the sun's 5,800 K.
+constexpr double max_heat = 1e100;       ///< W; derived from double precision: balances of such heats do not overflow.
 constexpr std::size_t max_iterations = 10'000;
 constexpr double power_of_temperature = 4;
 
@@ -73,12 +75,16 @@ class GraySystem {
             if (known_[i]) x[i] = emitted[i];
         const std::vector<double> of_known = incoming(x);
         std::vector<double> r(size_), p(size_), q(size_);
-        double scale = 0;
         for (std::size_t i = 0; i < size_; ++i) {
             if (known_[i]) continue;
             const ThermalSurface& s = surfaces_[i];
             const double own = s.temperature ? area_[i] * s.emissivity / (1 - s.emissivity) * emitted[i] : heat[i];
             r[i] = own + leak_[i] * surroundings + of_known[i];  // unknown radiosities are still 0
+        }
+        const double unit = divide_by_largest(r);
+        double scale = 0;
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (known_[i]) continue;
             scale += r[i] * r[i] / diagonal_[i];
             p[i] = r[i] / diagonal_[i];
         }
@@ -103,11 +109,23 @@ class GraySystem {
                 if (!known_[i]) p[i] = r[i] / diagonal_[i] + next / rho * p[i];
             rho = next;
         }
+        for (std::size_t i = 0; i < size_; ++i)
+            if (!known_[i]) x[i] *= unit;
         out.residual = scale > 0 ? std::sqrt(rho / scale) : 0;
         return out;
     }
 
   private:
+    /// Divides numbers by the largest absolute value among them, so that their squares neither overflow nor vanish.
+    /// Returns the divisor.
+    static double divide_by_largest(std::vector<double>& r) {
+        double largest = 0;
+        for (const double value : r) largest = std::max(largest, std::abs(value));
+        if (largest > 0)
+            for (double& value : r) value /= largest;
+        return largest;
+    }
+
     const ExchangeAreas& exchange_;
     std::span<const ThermalSurface> surfaces_;
     std::size_t size_;
@@ -156,12 +174,16 @@ Result<void> check(const SparseFactors& factors, std::span<const ThermalSurface>
                      "give one row for each surface of the table of view factors");
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const ThermalSurface& s = surfaces[i];
-        if (!(s.emissivity > 0 && s.emissivity <= 1))
-            return wrong(fmt::format("surface {}: emissivity {} is not in (0, 1]", i + 1, s.emissivity),
-                         "a mirror-like surface has an emissivity of 0.02 or more");
-        if (s.temperature ? !(*s.temperature >= 0 && *s.temperature < max_temperature) : !std::isfinite(s.heat))
-            return wrong(fmt::format("surface {}: temperature or heat is out of range", i + 1),
-                         "temperatures are in kelvins, heat in watts");
+        if (!(s.emissivity >= min_emissivity && s.emissivity <= 1))
+            return wrong(
+                fmt::format("surface {}: emissivity {} is not from {} to 1", i + 1, s.emissivity, min_emissivity),
+                "a mirror-like surface has an emissivity of 0.02 or more");
+        if (s.temperature && !(*s.temperature >= 0 && *s.temperature < max_temperature))
+            return wrong(fmt::format("surface {}: temperature {} is out of range", i + 1, *s.temperature),
+                         fmt::format("temperatures are in kelvins, from 0 to below {}", max_temperature));
+        if (!s.temperature && !(std::abs(s.heat) <= max_heat))
+            return wrong(fmt::format("surface {}: heat {} is out of range", i + 1, s.heat),
+                         "heat is in watts, of the whole surface");
     }
     if (!surroundings) return check_closed(factors);
     if (!(*surroundings >= 0 && *surroundings < max_temperature))
@@ -208,7 +230,7 @@ Error too_cold(const ExchangeAreas& exchange, const SparseFactors& factors, std:
                                                        system.area(sink) * solved.radiosity[sink]));
     const auto others = std::count(is_too_cold.begin(), is_too_cold.end(), 1) - 1;
     return wrong(
-        fmt::format("surface {} cannot take up {:g} W: at absolute zero it takes up {:.4g} W{}", sink + 1,
+        fmt::format("surface {} cannot take up {:.10g} W: at absolute zero it takes up {:.4g} W{}", sink + 1,
                     -surfaces[sink].heat, most,
                     others == 0 ? "" : fmt::format(" ({} more {} too cold, too)", others, others == 1 ? "is" : "are")),
         fmt::format("give it a heat of {:.4g} W or more (negative heat is taken up, positive heat is given off), make "
@@ -247,7 +269,8 @@ Result<GrayExchange> balance(const ExchangeAreas& exchange, const SparseFactors&
             continue;
         }
         // An adiabatic surface can be too cold or too hot only if a surface with heat is.
-        const double exitance = J + (system.area(i) > 0 ? (1 - e) / e * Q / system.area(i) : 0);
+        // The given heat rather than Q, whose rounding error a small emissivity would magnify.
+        const double exitance = J + (system.area(i) > 0 ? (1 - e) / e * surfaces[i].heat / system.area(i) : 0);
         if (exitance < 0 && surfaces[i].heat < 0) {
             is_too_cold[i] = 1;
             if (exitance < lowest) lowest = exitance, coldest = i;

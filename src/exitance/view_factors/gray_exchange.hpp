@@ -14,9 +14,12 @@ namespace exitance {
 /// Stefan and Boltzmann's constant, W/(m^2 K^4). Derived from the constants of the SI; source: CODATA 2018.
 constexpr double stefan_boltzmann = 5.670374419e-8;
 
+/// Derived from double precision: with lower emissivities of all surfaces, rounding would determine the result.
+constexpr double min_emissivity = 1e-12;
+
 /// Thermal state of a surface: gray, diffuse and opaque. Either its temperature or its net heat is given.
 struct ThermalSurface {
-    /// Emissivity, in (0, 1]. The default is derived from paint and masonry, see ISO 6946.
+    /// Emissivity, from `min_emissivity` to 1. The default is derived from paint and masonry, see ISO 6946.
     double emissivity = 0.9;
     std::optional<double> temperature = {};  ///< K
     double heat = 0;  ///< Net radiative heat that leaves the surface, W; used if there is no temperature. 0: adiabatic.

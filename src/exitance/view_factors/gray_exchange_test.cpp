@@ -129,7 +129,7 @@ TEST(GrayExchange, AHeatThatCannotBeTakenUpIsReportedWithItsLimit) {
     ASSERT_FALSE(excess);
     EXPECT_EQ(excess.error().code, ErrorCode::bad_input);
     const double most =
-        number_after(excess.error().message, "surface 2 cannot take up 1e+06 W: at absolute zero it takes up ");
+        number_after(excess.error().message, "surface 2 cannot take up 1000000 W: at absolute zero it takes up ");
     EXPECT_GT(most, 0);
     EXPECT_NEAR(number_after(excess.error().hint, "give it a heat of "), -most, 1e-9 * most);
     // Both remedies help: a heat nearer to 0, and a hotter surface. A heat further from 0 does not.
@@ -154,6 +154,50 @@ TEST(GrayExchange, AHeatThatMakesASurfaceHotterThanAnyMaterialIsReported) {
     EXPECT_NE(out.error().hint.find("a smaller heat"), std::string::npos);
     EXPECT_TRUE(solve_gray_exchange(F, std::vector<ThermalSurface>{{0.9, {}, 0}, {0.5, {}, 1e9}, {0.5, 300.0}}, {},
                                     StopRequest()));
+}
+
+TEST(GrayExchange, EmissivitiesOfAnySizeHaveAResultOrAnError) {
+    const SparseFactors F = table({2, 2, 4}, {{0, 0.4, 0.6}, {0.4, 0, 0.6}, {0.3, 0.3, 0.4}});
+    for (const double e : {0.5, 1e-6, 1e-12, 1e-13, 1e-17, 1e-200, 1e-310, 0.0, -1e-310}) {
+        const auto out =
+            solve_gray_exchange(F, std::vector<ThermalSurface>{{e, {}, 0}, {e, 400.0}, {e, 300.0}}, {}, StopRequest());
+        ASSERT_EQ(static_cast<bool>(out), e >= 1e-12) << e;
+        if (!out) {
+            EXPECT_NE(out.error().message.find("surface 1: emissivity"), std::string::npos) << e;
+        } else if (e < 0.1) {
+            EXPECT_GT(out->temperature[0], 300) << e;
+            EXPECT_LT(out->temperature[0], 400) << e;
+        }
+    }
+    // An adiabatic surface of small emissivity has the temperature of one of large emissivity.
+    const auto adiabatic = [&](double e) {
+        return solved(F, {{e, {}, 0.0}, {0.5, 400.0}, {0.5, 300.0}}).temperature[0];
+    };
+    EXPECT_NEAR(adiabatic(1e-12), adiabatic(0.9), 1e-9 * 400);
+}
+
+TEST(GrayExchange, HeatsOfAnySizeHaveAResultOrAnError) {
+    const SparseFactors F = table({2, 2, 4}, {{0, 0.4, 0.6}, {0.4, 0, 0.6}, {0.3, 0.3, 0.4}});
+    const auto heated = [&](double heat, double temperature) {
+        return solve_gray_exchange(F, std::vector<ThermalSurface>{{0.9, {}, 0}, {0.5, {}, heat}, {0.5, temperature}},
+                                   {}, StopRequest());
+    };
+    for (const double heat : {1e15, 1e80, 1e100, 1e101, 1e200, 1e308, double(HUGE_VAL), double(NAN)}) {
+        const auto hot = heated(heat, 300), cold = heated(-heat, 300);
+        ASSERT_FALSE(hot) << heat;
+        ASSERT_FALSE(cold) << heat;
+        const bool is_in_range = heat <= 1e100;
+        EXPECT_NE(hot.error().message.find(is_in_range ? "would have" : "out of range"), std::string::npos) << heat;
+        EXPECT_NE(cold.error().message.find(is_in_range ? "cannot take up" : "out of range"), std::string::npos)
+            << heat;
+    }
+    // The balance is linear: a heat 10^-4k as large leads to temperatures 10^-k as large.
+    const double usual = heated(1e3, 0)->temperature[1];
+    for (const double k : {10, 30, 60}) {
+        const auto small = heated(1e3 * std::pow(10, -4 * k), 0);
+        ASSERT_TRUE(small);
+        EXPECT_NEAR(small->temperature[1] * std::pow(10, k), usual, 1e-9 * usual) << k;
+    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/json_output.hpp"
@@ -68,8 +69,9 @@ ExitCode tell(const DaylightRequest& request, const DaylightSummary& summary, st
         terminal.print(as_text(summary, request.task, arguments.output));
     const double error = worst_of(summary.errors).largest();
     if (error <= arguments.error || !arguments.coefficients.empty()) return ExitCode::done;
+    const NumberTexts percents = distinct_percents(error, arguments.error, 2);
     terminal.progress().warn(fmt::format(
-        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * error, 100 * arguments.error,
+        "the error of {}% is above the requested {}%{}", percents.first, percents.second,
         summary.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
     return ExitCode::demand_not_reached;
 }

@@ -1,4 +1,5 @@
 #include "exitance/cli/verbs/factor_facts.hpp"
+#include "exitance/base/distinct_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -50,8 +51,9 @@ std::size_t wrong_rows(const ViewFactorFacts& facts) {
 namespace {
 
 std::string words_of_rows(const ViewFactorFacts& facts) {
-    std::string text = fmt::format("error of rows at most {:.3g} (requested {:g}); {} entries\n", facts.row_error,
-                                   facts.error, facts.entries);
+    const NumberTexts errors = distinct_texts(facts.row_error, facts.error);
+    std::string text = fmt::format("error of rows at most {} (requested {}); {} entries\n", errors.first, errors.second,
+                                   facts.entries);
     if (facts.dropped > 0)
         text += fmt::format("dropped: entries below {:g}, at most {:.3g} in a row\n", facts.smallest, facts.dropped);
     if (facts.has_defects)

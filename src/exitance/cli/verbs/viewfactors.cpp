@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/json_output.hpp"
@@ -198,20 +199,24 @@ class ViewFactorRun {
         if (arguments_.tolerance) {
             warn(facts.unsettled > 0, fmt::format("the entries of {} pairs of faces still disagree by more than {:g}",
                                                   facts.unsettled, *arguments_.tolerance));
-            warn(facts.max_row_sum > 1 + *arguments_.tolerance,
-                 fmt::format("a row adds up to {:.6g}, which exceeds 1 by more than {:g}", facts.max_row_sum,
-                             *arguments_.tolerance));
+            const double excess = facts.max_row_sum - 1;
+            const NumberTexts sums = distinct_texts(excess, *arguments_.tolerance);
+            warn(excess > *arguments_.tolerance,
+                 fmt::format("the sum of a row exceeds 1 by {}, more than {}", sums.first, sums.second));
             warn(facts.check.wrong > 0, fmt::format("{} of {} entries that rays checked are off by more than {:g}",
                                                     facts.check.wrong, facts.check.entries, *arguments_.tolerance));
             return reached ? ExitCode::done : ExitCode::demand_not_reached;
         }
         const double row_error = facts.transport ? facts.transport->row_error : facts.row_error;
-        warn(row_error > error(), fmt::format("the error of some row is {:.3g}, above {:g}", row_error, error()));
-        if (facts.transport)
+        const NumberTexts errors = distinct_texts(row_error, error());
+        warn(row_error > error(), fmt::format("the error of some row is {}, above {}", errors.first, errors.second));
+        if (facts.transport) {
+            const NumberTexts defects = distinct_texts(facts.transport->closure_defect, error());
             warn(facts.transport->closure_defect > error(),
-                 fmt::format(
-                     "a row of the operator, with the sky and backs of faces, differs from 1 by {:.3g}, more than {:g}",
-                     facts.transport->closure_defect, error()));
+                 fmt::format("a row of the operator, with the sky and backs of faces, differs from 1 by {}, more than "
+                             "{}",
+                             defects.first, defects.second));
+        }
         warn(wrong_rows(facts) > 0, fmt::format("{} of {} rows that rays checked are off by more than {:g}",
                                                 wrong_rows(facts), facts.row_check.rows.size(), error()));
         if (facts.unclosed > 0)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/methods/solve_scene.hpp"
@@ -57,16 +58,16 @@ void ViewSolve::run() {
 
 /// Returns text such as "reached: estimated error 1.8%, 2% requested" or "stopped by the time limit: ...".
 std::string ViewSolve::describe_end(const SolveStatistics& statistics) const {
-    const std::string error = statistics.relative_error_estimate
-                                  ? fmt::format("estimated error {:.2g}%", 100 * *statistics.relative_error_estimate)
-                                  : "the error is not known";
+    const std::optional<double>& estimate = statistics.relative_error_estimate;
+    const NumberTexts percents = distinct_percents(estimate.value_or(arguments_.error), arguments_.error, 2);
+    const std::string error = estimate ? fmt::format("estimated error {}%", percents.first) : "the error is not known";
     const StopReason why = statistics.stopped_by == StopReason::interrupt ? limits_.reason() : statistics.stopped_by;
     const bool is_signal = why == StopReason::interrupt || why == StopReason::termination;
     const std::string end = statistics.converged            ? "reached"
                             : is_signal                     ? "stopped"
                             : why == StopReason::iterations ? "not reached"
                                                             : fmt::format("stopped by the {}", name_of(why));
-    return fmt::format("{}: {}, {:.2g}% requested", end, error, 100 * arguments_.error);
+    return fmt::format("{}: {}, {}% requested", end, error, percents.second);
 }
 
 ViewAnswer ViewSolve::save() {

@@ -173,7 +173,7 @@ Result<void> IesReader::check_header() {
                            "it must be above 0: intensities are multiplied by it");
     for (const double size : {h.width, h.length, h.height})
         if (!(std::abs(size) <= 1e4))
-            return text_.error(fmt::format("the size {:g} of the opening is invalid", size), "sizes are at most 10000");
+            return text_.error(fmt::format("the size {} of the opening is invalid", size), "sizes are at most 10000");
     if (has_blpf_ && !(h.third > 0 && h.third < 1e6))
         return text_.error(fmt::format("the ballast-lamp photometric factor is {:g}", h.third),
                            "intensities are multiplied by it");

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/base/version.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/report/report_figures.hpp"
@@ -102,11 +103,11 @@ std::string requirements(const ReportContent& content, const ReportFigures& figu
         const bool is_light = j.quantity != "U0" && j.quantity != "UGR" && j.quantity != "Ra";
         const std::string unit = is_light ? std::string(" ") + symbol(content.unit) : "";
         html += fmt::format(
-            "<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{} {:.4g}{}</td>"
+            "<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{} {}{}</td>"
             "<td>{}</td><td class=\"text {}\">{}</td></tr>\n",
             escaped(j.where), escaped(j.task), name_of_quantity(j.quantity),
             j.quantity == "UGR" ? "at most" : "at least", j.required, unit,
-            j.verdict == Fulfilment::not_measured ? "-" : short_figure(j.reached) + unit,
+            j.verdict == Fulfilment::not_measured ? "-" : distinct_texts(j.reached, j.required).first + unit,
             j.verdict == Fulfilment::missed         ? "missed"
             : j.verdict == Fulfilment::not_measured ? "unknown"
                                                     : "reached",

@@ -37,9 +37,9 @@ Result<void> read_number(const std::string& word, PictureWords& out) {
     const std::optional<double> value = parse_number(word.substr(equals + 1));
     if (!value) return wrong_word(fmt::format("{} '{}' is not a number", name, shown(word.substr(equals + 1))));
     if (name == "rotation" && !(*value >= -max_rotation && *value <= max_rotation))
-        return wrong_word(fmt::format("rotation is {:g}, not from -360 to 360 degrees", *value));
+        return wrong_word(fmt::format("rotation is {}, not from -360 to 360 degrees", *value));
     if (name == "scale" && !(*value > 0 && *value <= max_scale))
-        return wrong_word(fmt::format("scale is {:g}, not a factor above 0 and at most {:g}", *value, max_scale));
+        return wrong_word(fmt::format("scale is {}, not a factor above 0 and at most {:g}", *value, max_scale));
     to = value;
     return {};
 }

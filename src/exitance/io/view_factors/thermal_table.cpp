@@ -83,8 +83,9 @@ std::pair<std::string, std::string> fault_of(const std::array<double, 4>& row, s
             fmt::format("surfaces are numbered from 1 to {}; 0 stands for all", surfaces)};
     if (!std::isnan(temperature) && !std::isnan(heat))
         return {"both temperature and heat are given", "one of them follows from the other: leave one field empty"};
-    if (!std::isnan(emissivity) && !(emissivity > 0 && emissivity <= 1))
-        return {fmt::format("emissivity {} is not in (0, 1]", emissivity), "mirror-like metals have 0.02 or more"};
+    if (!std::isnan(emissivity) && !(emissivity >= min_emissivity && emissivity <= 1))
+        return {fmt::format("emissivity {} is not from {} to 1", emissivity, min_emissivity),
+                "mirror-like metals have 0.02 or more"};
     if (!std::isnan(temperature) && !(temperature >= 0 && temperature < 1e5))
         return {fmt::format("temperature {} is out of range", temperature), "temperatures are in kelvins"};
     return {};

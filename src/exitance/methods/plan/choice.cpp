@@ -13,7 +13,7 @@ namespace exitance {
 
 namespace {
 
-/// True if links may be chosen, or may deliver the light for the requested basis.
+/// True if the options allow a solve over links, whose linear or quadratic elements also deliver the light.
 bool may_deliver(const SolveOptions& options) {
     const bool is_polynomial =
         !options.basis || options.basis == BasisKind::multiwavelet2 || options.basis == BasisKind::multiwavelet3;

@@ -27,8 +27,8 @@ constexpr double pair_form_factors = 100;  ///< Form factors per pair of pieces;
 constexpr double element_form_factors = 24;
 constexpr std::size_t way_pilot_points = 256;
 constexpr unsigned way_pilot_rays = 64;
-/// Smallest number of rays of a solve for which the pilot is worthwhile. The pilot takes about twice its own number of
-/// rays: three percent.
+/// Minimum number of rays of a solve that begins with a pilot. A pilot casts two rays per point and direction, which is
+/// then at most 3% of the solve.
 constexpr double min_rays_for_pilot = 64 * way_pilot_points * way_pilot_rays;
 
 /// Numbers of elements and rays of a first attempt.
@@ -101,8 +101,8 @@ double pilot_spread(const Stage& stage, const SolveOptions& options) {
     return sum.light > 0 ? std::sqrt(sum.variance * static_cast<double>(points.size())) / sum.light : 0;
 }
 
-/// Returns the rays of further attempts if the error of constant elements exceeds their share of the target, one half.
-/// The error is predicted as that of independent matrix rows of 64 rays, averaged over the elements.
+/// Returns the number of rays of further attempts; 0 if the method's error is within its share of the target, one half.
+/// The error is predicted for constant elements, whose matrix rows of 64 rays have independent errors.
 double further_attempts(double spread, double error, const Counts& counts, double gather) {
     namespace c = calibrated;
     const double method = spread / std::sqrt(counts.elements);

@@ -141,15 +141,15 @@ struct ForecastMesh {
     double finer() const { return leaves / own_leaves; }
 };
 
-/// Returns the number of leaves of a projection that takes about a second on one processor, from the numbers of
-/// emitters and faces: times would differ from run to run.
+/// Returns the number of leaves that a projection of direct light computes in about a second on one processor. The
+/// number is estimated from the numbers of emitters and faces instead of measured, so that all runs agree.
 double leaves_a_second(const Stage& stage) {
-    // Leaves with one emitter and few faces, faces that double the time of a leaf, and the time of a leaf with many
-    // emitters over that with one. Measured by `exitance solve --error 0.002 --dry-run --threads 1`: 62,000 leaves of
-    // `cornell` with 17 faces took a second, 26,000 of `complex` with 545, 5,000 of `clutter` with 3,012, and 6,000 to
-    // 12,000 of `office` with 647 faces and 14 emitters.
+    // Leaves per second with one emitter and few faces; the number of faces that doubles the time of a leaf; the time
+    // of a leaf with many emitters, relative to one with a single emitter. Measured by `exitance solve --error 0.002
+    // --dry-run --threads 1`: 62,000 leaves of `cornell` with 17 faces took a second, 26,000 of `complex` with 545,
+    // 5,000 of `clutter` with 3,012, and 6,000 to 12,000 of `office` with 647 faces and 14 emitters.
     constexpr double leaves_of_one = 1e5, faces_that_double = 200, time_of_many = 2;
-    // More emitters are evaluated by a few rays. Derived from the projection, where exact light ends at that number.
+    // The projection evaluates up to this number of emitters exactly, and more emitters by a few rays.
     constexpr std::size_t max_exact_emitters = 8;
     const std::size_t count = stage.direct.emitters().size();
     const double emitters =

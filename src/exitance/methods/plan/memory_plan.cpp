@@ -55,7 +55,7 @@ Result<bool> fit_into_memory(Knobs& knobs, const Stage& stage, const SolveOption
                 ErrorCode::limit,
                 fmt::format("{:.0f} MiB are in use and the coarsest mesh needs about {:.0f} MiB more, over the "
                             "limit of {:.0f} MiB",
-                            used / 0x1p20, now / 0x1p20, limit / 0x1p20),
+                            std::ceil(used / 0x1p20), std::ceil(now / 0x1p20), std::floor(limit / 0x1p20)),
                 "--memory-limit", "raise the limit"};
         before = now;
         knobs.solve_mesh.edge *= calibrated::coarsening;

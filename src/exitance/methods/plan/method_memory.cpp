@@ -59,8 +59,8 @@ Result<void> check_method_memory(const Stage& stage, const SolveOptions& options
                     "MiB",
                     name_in(method_names, options.method),
                     options.basis ? fmt::format(" with basis {}", name_in(basis_names, *options.basis)) : "",
-                    needed / 0x1p20, leaves, used / 0x1p20,
-                    options.memory_limit_bytes ? "the limit is" : "the machine has", limit / 0x1p20),
+                    std::ceil(needed / 0x1p20), leaves, std::ceil(used / 0x1p20),
+                    options.memory_limit_bytes ? "the limit is" : "the machine has", std::floor(limit / 0x1p20)),
         options.memory_limit_bytes ? "--memory-limit" : "memory",
         options.method == Method::growing_cells
             ? "choose a smaller --max-units, a larger --error or another method"

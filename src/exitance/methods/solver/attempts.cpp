@@ -1,3 +1,4 @@
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/solver/standard_solver.hpp"
 
 #include <fmt/format.h>
@@ -122,10 +123,11 @@ void StandardSolver::solve_indirect_light() {
 }
 
 std::string StandardSolver::reason_for_attempt(double demand) const {
-    const double found = 100 * certificate_.largest();
-    if (found > 100 * demand) return fmt::format("estimated error {:.2f}% > {:.2f}%", found, 100 * demand);
-    return fmt::format("estimated error {:.2f}%, uncertain by {:.2f}%, is too close to {:.2f}%", found,
-                       100 * certificate_.largest_uncertainty(), 100 * demand);
+    const double found = certificate_.largest();
+    const NumberTexts percents = distinct_percents(found, demand);
+    if (found > demand) return fmt::format("estimated error {}% > {}%", percents.first, percents.second);
+    return fmt::format("estimated error {}%, uncertain by {:.2f}%, is too close to {}%", percents.first,
+                       100 * certificate_.largest_uncertainty(), percents.second);
 }
 
 void StandardSolver::attempt() {
@@ -226,7 +228,8 @@ bool StandardSolver::refines_bodies(double demand, double last_seconds) {
     body_demand_.tighten(statistics().bodies, bodies(), limit,
                          starts_with_step_ ? BodyDemand::Cause::gathered : BodyDemand::Cause::seen);
     if (!starts_with_step_) solve_again();
-    progress_.note(fmt::format("estimated error {:.2f}% of the worst body > {:.2f}%: {}", 100 * worst, 100 * limit,
+    const NumberTexts percents = distinct_percents(worst, limit);
+    progress_.note(fmt::format("estimated error {}% of the worst body > {}%: {}", percents.first, percents.second,
                                starts_with_step_ ? "refining the delivered elements"
                                                  : "solving again with finer elements where such bodies see them"));
     return true;

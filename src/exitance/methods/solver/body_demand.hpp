@@ -20,8 +20,8 @@ class BodyDemand {
 
     /// Light whose error is reduced for the sake of a body.
     enum class Cause : std::uint8_t {
-        gathered,  ///< The light gathered on the body.
-        seen       ///< The direct light of the elements that the body sees.
+        gathered,  ///< The reflected light on the body itself, which the gather computes.
+        seen       ///< The direct light on the elements that the body sees, whose error it receives.
     };
     /// Reduces the errors allowed on the bodies whose error exceeds `limit`.
     void tighten(std::span<const BodyError> errors, const SceneBodies& bodies, double limit, Cause cause);

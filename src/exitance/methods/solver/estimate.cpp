@@ -1,3 +1,4 @@
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/solver/solver.hpp"
 
 #include <fmt/format.h>
@@ -163,19 +164,21 @@ void Solver::warn_of_rooms() {
     if (worst->error <= limit) return;
     const auto wrong =
         std::count_if(rooms.begin(), rooms.end(), [&](const RoomError& room) { return room.error > limit; });
-    warn(fmt::format("the light of the {} is wrong by about {:.3g}%, where {:.3g}% was requested{}",
-                     place_of_room(stage_, static_cast<std::size_t>(worst - rooms.begin())), 100 * worst->error,
-                     100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
+    const NumberTexts percents = distinct_percents(worst->error, limit);
+    warn(fmt::format("the light of the {} is wrong by about {}%, where {}% was requested{}",
+                     place_of_room(stage_, static_cast<std::size_t>(worst - rooms.begin())), percents.first,
+                     percents.second, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
 }
 
 void Solver::warn_of_bodies() {
     const std::optional<double> demand = options_.error_demand();
     if (!demand) return;
     warn_of_hidden_errors();
+    const double limit = ErrorBudget(*demand).body();
     const BodyError* worst = nullptr;
     std::size_t wrong = 0;
     for (const BodyError& body : statistics().bodies) {
-        if (!body.error || *body.error <= ErrorBudget(*demand).body()) continue;
+        if (!body.error || *body.error <= limit) continue;
         ++wrong;
         if (!worst || *body.error > *worst->error) worst = &body;
     }
@@ -184,11 +187,11 @@ void Solver::warn_of_bodies() {
     const Surface& face = scene.surfaces()[worst->first];
     const Point at = centroid(scene.outline(worst->first));
     warn(fmt::format(
-        "the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
-        "more than three times the {:.3g}% requested for the whole{}; {}",
+        "the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {}%, "
+        "more than three times the {:.6g}% requested for the whole{}; {}",
         scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x, at.y, at.z,
-        100 * *worst->error, 100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : "",
-        advice_at_end("corrects it")));
+        distinct_percents(*worst->error, limit).first, 100 * *demand,
+        wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : "", advice_at_end("corrects it")));
 }
 
 }  // namespace exitance

@@ -1,3 +1,4 @@
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/solver/published_solver.hpp"
 
 #include <fmt/format.h>
@@ -110,8 +111,9 @@ bool PublishedSolver::aim_lower(double demand, double last_seconds) {
         return stop_early(StopReason::time_limit), false;
     }
     aim_ *= std::max(min_factor, calibrated::part_aim * demand / certificate_.largest());
-    progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: solving again for {:.2f}%",
-                               100 * certificate_.largest(), 100 * demand, 100 * aim_));
+    const NumberTexts percents = distinct_percents(certificate_.largest(), demand);
+    progress_.note(fmt::format("estimated error {}% > {}%: solving again for {:.3g}%", percents.first, percents.second,
+                               100 * aim_));
     return true;
 }
 

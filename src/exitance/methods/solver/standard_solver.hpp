@@ -82,7 +82,7 @@ class StandardSolver final : public Solver {
     /// Passes the delivered light to the `show` callback, on the elements of the export.
     void show_light();
 
-    // The light of an attempt.
+    // Steps that compute the light of an attempt.
     void project_direct();
     /// True if a stop now would leave only direct light, without an estimate of its error. Such light is not delivered.
     bool light_is_dropped_at_stop() const;

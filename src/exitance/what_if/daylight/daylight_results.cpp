@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/processes/exchange_archived.hpp"
 #include "exitance/processes/result_of_all.hpp"
 #include "exitance/scene/place_finder.hpp"
@@ -203,9 +204,11 @@ std::vector<std::string> DaylightSimulation::warnings() const {
             fmt::format("{:.2g}% of the light crosses panes of groups twice, and counts as if it crossed them once: "
                         "intervals of hours with changed states are wider by it",
                         100 * twice));
-    if (error > wanted)
-        out.push_back(fmt::format("the error of {:.2g}% with the geometry of a state is above the requested {:.2g}%",
-                                  100 * error, 100 * wanted));
+    if (error > wanted) {
+        const NumberTexts percents = distinct_percents(error, wanted, 2);
+        out.push_back(fmt::format("the error of {}% with the geometry of a state is above the requested {}%",
+                                  percents.first, percents.second));
+    }
     return out;
 }
 
