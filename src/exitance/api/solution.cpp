@@ -6,6 +6,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/statistics_json.hpp"
+#include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/what_if/light_groups/keep_light_groups.hpp"
 
 namespace exitance::api {
@@ -29,6 +30,13 @@ Mesh triangles_of(const exitance::Solution& solution) {
         });
     }
     out.irradiance = std::move(conforming.mesh.irradiance), out.radiosity = std::move(conforming.mesh.radiosity);
+    return out;
+}
+
+/// A solution with its single mesh, which those with layers lack.
+exitance::Result<exitance::Solution> with_mesh(const exitance::Solution& solution) {
+    exitance::Solution out = solution;
+    if (const exitance::Result<void> made = make_requested_mesh(out); !made) return made.error();
     return out;
 }
 
@@ -86,11 +94,19 @@ Scene Solution::scene() const {
 }
 
 Result<Mesh> Solution::mesh() const {
-    return take_turn<Mesh>([&]() -> Result<Mesh> { return triangles_of(data_->solution); });
+    return take_turn<Mesh>([&]() -> Result<Mesh> {
+        const exitance::Result<exitance::Solution> meshed = with_mesh(data_->solution);
+        if (!meshed) return to_api(meshed.error());
+        return triangles_of(*meshed);
+    });
 }
 
 Result<void> Solution::export_mesh(const std::string& path) const {
-    return take_turn<void>([&] { return to_api(export_solution(data_->solution, path)); });
+    return take_turn<void>([&]() -> Result<void> {
+        const exitance::Result<exitance::Solution> meshed = with_mesh(data_->solution);
+        if (!meshed) return to_api(meshed.error());
+        return to_api(export_solution(*meshed, path));
+    });
 }
 
 Result<void> Solution::save(const std::string& path) const {

@@ -6,6 +6,7 @@
 
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/evaluate/energy.hpp"
+#include "exitance/evaluate/layer_elements.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/solve_report.hpp"
@@ -27,16 +28,28 @@ bool StandardSolver::make_discontinuity() {
     }
     SafePoints points = safe_points();
     const DiscontinuityReport report =
-        add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
+        add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr,
+                               shows_layers_ ? show_layers() : ShowLayers());
     statistics().seconds[RunPart::mesh] += report.mesh_seconds;
     statistics().seconds[RunPart::direct] += report.direct_seconds;
     if (report.interrupted) stop_as_requested();
-    const bool follows_shadows = !solution_.discontinuity.empty();
+    const bool follows_shadows = !solution_.discontinuity.empty() || solution_.layers;
     if (follows_shadows) warn_of_lines();
     // The reported mesh must not depend on whether there was a time limit.
     if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
     if (!follows_shadows && direct_.tree.size() == 0) project_coarsely();
     return follows_shadows;
+}
+
+ShowLayers StandardSolver::show_layers() const {
+    return [this](const LightFormPointer& layers) {
+        Solution shown = solution_;
+        shown.layers = layers;
+        SolveStatistics& s = shown.statistics;
+        s.converged = false, s.relative_error_estimate.reset(), s.relative_error_bound.reset(), s.error_p99.reset();
+        shown.interpolant = elements_of_layers(shown);
+        shows_layers_(std::move(shown));
+    };
 }
 
 void StandardSolver::warn_of_lines() {
