@@ -7,8 +7,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/error/area_samples.hpp"
-#include "exitance/lab/layers/light_layers.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 #include "support/test_scenes.hpp"

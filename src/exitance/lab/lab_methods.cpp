@@ -5,11 +5,12 @@
 #include "exitance/lab/dm_tree/tree_cutter.hpp"
 #include "exitance/lab/growing_cells/cell_function.hpp"
 #include "exitance/lab/growing_cells/cells_method.hpp"
-#include "exitance/lab/layers/mesh_of_layers.hpp"
 #include "exitance/lab/layers/source_layers.hpp"
+#include "exitance/lab/layers/winged_edge_bytes.hpp"
 #include "exitance/lab/local_passes/solve_by_lines.hpp"
 #include "exitance/lab/tasks/solve_by_tasks.hpp"
 #include "exitance/methods/extensions.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 namespace exitance {
 namespace {
@@ -35,8 +36,7 @@ std::map<std::string, double> single_mesh_figures(const SixNodeMesh& mesh) {
     return {{"layer_bytes", 0}, {"winged_edge_bytes", static_cast<double>(winged_edge_bytes(mesh))}};
 }
 
-constexpr DiscontinuityExtension discontinuity{choose_structures, make_layered_light, make_mesh_of_layers,
-                                               single_mesh_figures};
+constexpr DiscontinuityExtension discontinuity{choose_structures, make_layered_light, single_mesh_figures};
 
 /// A method in a published form, without an estimate of its error.
 constexpr MethodEntry published(Method id, SolveMethod solve, const char* basis, ForecastMethod forecast = nullptr,

@@ -28,9 +28,6 @@ struct DiscontinuityExtension {
     /// Makes the layers. They record the options of the single mesh (`solve`). `show` may be empty.
     LayeredLight (*make_layers)(const Stage& stage, const DiscontinuityOptions& options, const SolveOptions& solve,
                                 const ShowLayers& show, const StopRequest& stop);
-    /// Adds the single mesh to a solution with layers, from the options that they record. Error: the layers record
-    /// none, or `stop` was requested.
-    Result<void> (*make_mesh)(Solution& solution, const StopRequest& stop);
     /// Numbers for the statistics of the same light as a single mesh, by their JSON keys.
     std::map<std::string, double> (*figures)(const SixNodeMesh& mesh);
 };

@@ -14,7 +14,7 @@
 #include "exitance/io/scenes/textures/normal_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/processes/result_of_all.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 

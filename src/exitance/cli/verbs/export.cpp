@@ -6,7 +6,7 @@
 #include "exitance/io/export/export_links.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 
 namespace exitance {
 

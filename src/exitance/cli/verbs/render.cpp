@@ -19,10 +19,10 @@
 #include "exitance/io/pictures/mesh_colours.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/lab/layers/light_layers.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/processes/result_of_all.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

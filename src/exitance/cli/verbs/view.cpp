@@ -18,7 +18,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/what_if/light_groups/keep_light_groups.hpp"
 

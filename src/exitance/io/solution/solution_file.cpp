@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t first_format = 1, format = 3;
 
 std::vector<LightFormGroup>& known_groups() {
-    static std::vector<LightFormGroup> groups;
+    static std::vector<LightFormGroup> groups{{"layers", write_layers, read_layers}};
     return groups;
 }
 

@@ -9,7 +9,8 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/discontinuity/exact_places.hpp"
-#include "exitance/lab/layers/mesh_of_layers.hpp"
+#include "exitance/lab/layers/winged_edge_bytes.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/scene/emitter_groups.hpp"
 #include "exitance/what_if/light_groups/group_direct.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
@@ -198,21 +199,6 @@ void add_sheets(const SixNodeMesh& mesh, const Scene& scene, std::uint32_t sourc
         for (LightLayers::Sheet& sheet : sheets) out.push_back(std::move(sheet));
     report.triangles += mesh.size(), report.winged_edge_bytes += winged_edge_bytes(mesh);
 }
-
-}  // namespace
-
-std::size_t winged_edge_bytes(const SixNodeMesh& mesh) {
-    std::vector<bool> is_corner(mesh.points.size()), is_middle(mesh.points.size());
-    for (const auto& n : mesh.nodes)
-        for (std::size_t k = 0; k < 3; ++k) is_corner[n[k]] = is_middle[n[3 + k]] = true;
-    const auto count = [](const std::vector<bool>& of) {
-        return static_cast<std::size_t>(std::count(of.begin(), of.end(), true));
-    };
-    return count(is_corner) * sizeof(WingedEdgeMesh::Vertex) + count(is_middle) * sizeof(WingedEdgeMesh::Edge) +
-           mesh.size() * sizeof(WingedEdgeMesh::Face);
-}
-
-namespace {
 
 /// Adds the numbers and times of one mesh to those of all meshes.
 void add_report(const DiscontinuityReport& own, LayersReport& sum) {

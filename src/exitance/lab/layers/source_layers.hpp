@@ -1,7 +1,7 @@
 #pragma once
 
-#include "exitance/lab/layers/light_layers.hpp"
 #include "exitance/methods/extensions.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 namespace exitance {
 
@@ -22,8 +22,5 @@ LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& op
 /// Like `make_light_layers`, in the form that the engine uses. `solve`: options of the single mesh, which are recorded.
 LayeredLight make_layered_light(const Stage& stage, const DiscontinuityOptions& options, const SolveOptions& solve,
                                 const ShowLayers& show, const StopRequest& stop);
-
-/// Memory of a mesh as a winged-edge structure with one value per node, bytes.
-std::size_t winged_edge_bytes(const SixNodeMesh& mesh);
 
 }  // namespace exitance

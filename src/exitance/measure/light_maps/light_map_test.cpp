@@ -7,7 +7,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/transport/open_points.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "exitance/base/check.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/evaluate/layer_elements.hpp"
 #include "exitance/mesh/element_locator.hpp"
@@ -110,12 +109,6 @@ SixNodeMesh single_discontinuity_mesh(const Stage& stage, const SolveOptions& op
     const MeshTask task(stage, options, solution, stop);
     DiscontinuityReport report;
     return make_discontinuity_mesh(stage, task.ask, report, stop);
-}
-
-Result<void> make_requested_mesh(Solution& solution, const StopRequest& stop) {
-    if (!solution.layers || !solution.discontinuity.empty()) return {};
-    EXI_CHECK(extensions().discontinuity);  // it has made the layers
-    return extensions().discontinuity->make_mesh(solution, stop);
 }
 
 }  // namespace exitance

@@ -18,9 +18,4 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
 SixNodeMesh single_discontinuity_mesh(const Stage& stage, const SolveOptions& options, const Solution& solution,
                                       const StopRequest& stop);
 
-/// Adds the single mesh to a solution that has layers in its place, for exports and views of one mesh; its interpolant
-/// becomes that of the mesh. Does nothing for other solutions. The mesh has the same bits as without --layers. Takes
-/// about as long as the solve took for the layers. Error: this program cannot make the mesh, or `stop` was requested.
-Result<void> make_requested_mesh(Solution& solution, const StopRequest& stop = StopRequest());
-
 }  // namespace exitance

@@ -1,14 +1,14 @@
-#include "exitance/lab/layers/mesh_of_layers.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <sstream>
 
-#include "exitance/lab/layers/light_layers.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/options/solve_option_table.hpp"
 #include "exitance/methods/plan/plan.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 namespace exitance {
 namespace {
@@ -74,13 +74,15 @@ Result<SolveOptions> read_mesh_options(const std::string& text) {
     return request.options;
 }
 
-Result<void> make_mesh_of_layers(Solution& solution, const StopRequest& stop) {
+Result<void> make_requested_mesh(Solution& solution, const StopRequest& stop) {
+    if (!solution.layers || !solution.discontinuity.empty()) return {};
     const std::string& text = layers_of(solution).mesh;
     if (text.empty())
         return Error{ErrorCode::usage, "the layers do not record the options of a single mesh", "",
                      "solve again without --layers on"};
     Result<SolveOptions> options = read_mesh_options(text);
     if (!options) return options.error();
+    if (const Result<void> linked = check_extensions(*options); !linked) return linked.error();
     options->bounces = solution.bounces;
     Stage stage(solution.scene);
     survey(stage, *options, stop);

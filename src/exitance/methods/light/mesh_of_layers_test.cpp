@@ -1,4 +1,4 @@
-#include "exitance/lab/layers/mesh_of_layers.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,10 @@
 #include "exitance/evaluate/layer_elements.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/lab/layers/light_layers.hpp"
-#include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/scene/add_polygon.hpp"
 #include "exitance/scene/emitter_groups.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 #include "exitance/what_if/light_groups/keep_light_groups.hpp"
 #include "support/checked_scene.hpp"
 #include "support/motion.hpp"

@@ -1,4 +1,4 @@
-#include "exitance/lab/layers/light_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,9 +1,9 @@
-#include "exitance/lab/layers/layers_group.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/lab/layers/mesh_of_layers.hpp"
+#include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 namespace exitance {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "exitance/base/ids.hpp"
 #include "exitance/base/spectrum.hpp"
-#include "exitance/lab/layers/light_layer.hpp"
+#include "exitance/solution/layers/light_layer.hpp"
 #include "exitance/solution/solution.hpp"
 
 namespace exitance {
