@@ -278,6 +278,21 @@ TEST(DiscontinuityMesh, CloughTocherElementsMeetTheRequestedError) {
     }
 }
 
+TEST(DiscontinuityMesh, WarnsIfFewerThanHalfOfTheLinesAreFollowedUnlessTheUserChoseThem) {
+    const auto is_warned = [](const std::optional<ShadowLines>& lines) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.05};
+        options.discontinuity.lines = lines;
+        const Solution s = solved(built_scene("boxes", {{"lights", "3"}}), options);
+        const auto& warnings = s.statistics.warnings;
+        return std::any_of(warnings.begin(), warnings.end(),
+                           [](const std::string& w) { return w.find("shadow lines") != std::string::npos; });
+    };
+    EXPECT_TRUE(is_warned({}));
+    EXPECT_TRUE(is_warned(ShadowLines())) << "as with --dm-lines auto";
+    EXPECT_FALSE(is_warned(ShadowLines{.kind = ShadowLines::Kind::strongest, .count = 3}));
+    EXPECT_FALSE(is_warned(ShadowLines{.kind = ShadowLines::Kind::all}));
+}
+
 TEST(DiscontinuityMesh, SourceLayersMeetTheRequestedErrorAlsoWithReflections) {
     for (const int bounces : {0, -1}) {
         SolveOptions options{.method = Method::discontinuity, .bounces = bounces, .error_interpolant = 0.02};

@@ -55,7 +55,9 @@ ShowLayers StandardSolver::show_layers() const {
 void StandardSolver::warn_of_lines() {
     const DiscontinuityCounts& c = *statistics().discontinuity;
     const std::size_t followed = c.d0 + c.d1 + c.d2 + c.eee;
-    if (options_.discontinuity.lines || c.left_out <= followed) return;
+    const auto& lines = options_.discontinuity.lines;
+    const bool are_chosen = lines && lines->kind != ShadowLines::Kind::automatic;
+    if (are_chosen || c.left_out <= followed) return;
     warn(
         fmt::format("the mesh follows {} shadow lines; {} sources, edges and lines were left out, as they change the "
                     "light little or are too many (--dm-lines all leaves none out)",
