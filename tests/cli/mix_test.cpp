@@ -44,6 +44,36 @@ TemporaryFolder* ProgramMix::folder = nullptr;
 
 }  // namespace
 
+TEST_F(ProgramMix, DimsLayersWithTheirLamps) {
+    const std::vector<std::string> solve{"solve",    path("s.obj"), "--method", "discontinuity",
+                                         "--layers", "on",          "--error",  "0.05"};
+    const auto solved = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), solve.begin(), solve.end());
+        return run_program(more);
+    };
+    Finished run = solved({"--light-groups", "-o", path("layers.h5")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    run = run_program({"mix", path("layers.h5"), "left=0", "right=2", "-o", path("mixed.h5")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    // Both lamps are placed symmetrically, so twice one lamp equals both.
+    EXPECT_NEAR(light("mixed.h5")[0], light("layers.h5")[0], 0.05 * light("layers.h5")[0]);
+    for (const std::string name : {"left", "right"}) {
+        run = run_program({"render", path("mixed.h5"), "-o", path("layer.png"), "--layer", name, "--size", "20x20"});
+        EXPECT_EQ(run.status, 0) << run.err;
+    }
+    EXPECT_EQ(run_program({"export", path("mixed.h5"), "-o", path("mixed.vtu")}).status, 0);
+    // Without layers, a discontinuity mesh holds the light of all lamps together.
+    run = run_program({"solve", path("s.obj"), "--method", "discontinuity", "--light-groups", "-o", path("no.h5")});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("--layers on"), std::string::npos) << run.err;
+    // Snapshots after each source.
+    run = solved({"--snapshots", "rounds", "-o", path("steps.h5")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run_program({"stats", path("steps.0001.h5")}).status, 0);
+    EXPECT_EQ(run_program({"stats", path("steps.0002.h5")}).status, 0);
+    EXPECT_NE(run_program({"stats", path("steps.0003.h5")}).status, 0);
+}
+
 TEST_F(ProgramMix, DimsLampsAndWritesACompleteSolution) {
     const Finished run = run_program({"mix", path("s.h5"), "left=0", "right=2", "-o", path("d.h5")});
     ASSERT_EQ(run.status, 0) << run.err;

@@ -49,10 +49,16 @@ struct SolutionData {
     LightGroups groups;
     mutable std::optional<RadiosityFunction> function;  ///< Made at the first use, under the caller's lock.
 
+    /// The solution with its single mesh, which those with layers lack, and its light. Made like `function`.
+    mutable std::unique_ptr<const exitance::Solution> meshed_solution;
+    mutable std::optional<RadiosityFunction> meshed_function;
+
     const RadiosityFunction& light() const {
         if (!function) function.emplace(solution);
         return *function;
     }
+    exitance::Result<const exitance::Solution*> meshed() const;
+    exitance::Result<const RadiosityFunction*> meshed_light() const;
 };
 
 struct StopRequest::State {

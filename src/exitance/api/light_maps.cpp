@@ -52,8 +52,10 @@ Result<MapsInUvs> bake_in_uvs(const Solution& solution, const BakeOptions& optio
     exitance::Result<UvTarget> target = find_uv_target(scene, find_scene_file(scene, ""), options.uv, in);
     if (!target) return to_api(target.error());
     target->options.curved = &curved;
+    const exitance::Result<const RadiosityFunction*> light = solution.data().meshed_light();
+    if (!light) return to_api(light.error());
     exitance::Result<UvLightMaps> maps =
-        bake_uv_light_maps(solution.data().light(), target->set, target->options, run.progress(), run.stop());
+        bake_uv_light_maps(**light, target->set, target->options, run.progress(), run.stop());
     if (!maps) return to_api(maps.error());
     target->options.curved = nullptr;
     return MapsInUvs{std::move(*target), std::move(*maps)};
@@ -115,8 +117,9 @@ Result<LightMaps> bake(const Solution& solution, const BakeOptions& options, con
         if (options.uv.empty()) {
             exitance::BakeOptions in;
             in.density = options.density, in.padding = options.padding, in.curved = &curved;
-            exitance::Result<exitance::LightMaps> maps =
-                bake_light_maps(solution.data().light(), in, run.progress(), run.stop());
+            const exitance::Result<const RadiosityFunction*> light = solution.data().meshed_light();
+            if (!light) return to_api(light.error());
+            exitance::Result<exitance::LightMaps> maps = bake_light_maps(**light, in, run.progress(), run.stop());
             if (!maps) return to_api(maps.error());
             data->maps = std::move(*maps);
         } else {

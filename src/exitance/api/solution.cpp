@@ -6,6 +6,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/statistics_json.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/what_if/light_groups/keep_light_groups.hpp"
 
 namespace exitance::api {
@@ -33,6 +34,24 @@ Mesh triangles_of(const exitance::Solution& solution) {
 }
 
 }  // namespace
+
+exitance::Result<const exitance::Solution*> SolutionData::meshed() const {
+    if (!solution.layers || !solution.discontinuity.empty()) return &solution;
+    if (!meshed_solution) {
+        auto made = std::make_unique<exitance::Solution>(solution);
+        if (const exitance::Result<void> mesh = make_requested_mesh(*made); !mesh) return mesh.error();
+        meshed_solution = std::move(made);
+    }
+    return meshed_solution.get();
+}
+
+exitance::Result<const RadiosityFunction*> SolutionData::meshed_light() const {
+    const exitance::Result<const exitance::Solution*> made = meshed();
+    if (!made) return made.error();
+    if (*made == &solution) return &light();
+    if (!meshed_function) meshed_function.emplace(**made);
+    return &*meshed_function;
+}
 
 Result<std::vector<Light>> Solution::light(std::span<const Probe> probes, Component component,
                                            const Control& control) const {
@@ -86,11 +105,19 @@ Scene Solution::scene() const {
 }
 
 Result<Mesh> Solution::mesh() const {
-    return take_turn<Mesh>([&]() -> Result<Mesh> { return triangles_of(data_->solution); });
+    return take_turn<Mesh>([&]() -> Result<Mesh> {
+        const exitance::Result<const exitance::Solution*> meshed = data_->meshed();
+        if (!meshed) return to_api(meshed.error());
+        return triangles_of(**meshed);
+    });
 }
 
 Result<void> Solution::export_mesh(const std::string& path) const {
-    return take_turn<void>([&] { return to_api(export_solution(data_->solution, path)); });
+    return take_turn<void>([&]() -> Result<void> {
+        const exitance::Result<const exitance::Solution*> meshed = data_->meshed();
+        if (!meshed) return to_api(meshed.error());
+        return to_api(export_solution(**meshed, path));
+    });
 }
 
 Result<void> Solution::save(const std::string& path) const {

@@ -7,7 +7,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/error/area_samples.hpp"
-#include "exitance/lab/layers/light_layers.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 #include "support/test_scenes.hpp"
@@ -277,21 +278,44 @@ TEST(DiscontinuityMesh, CloughTocherElementsMeetTheRequestedError) {
     }
 }
 
+TEST(DiscontinuityMesh, WarnsIfFewerThanHalfOfTheLinesAreFollowedUnlessTheUserChoseThem) {
+    const auto is_warned = [](const std::optional<ShadowLines>& lines) {
+        SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.05};
+        options.discontinuity.lines = lines;
+        const Solution s = solved(built_scene("boxes", {{"lights", "3"}}), options);
+        const auto& warnings = s.statistics.warnings;
+        return std::any_of(warnings.begin(), warnings.end(),
+                           [](const std::string& w) { return w.find("shadow lines") != std::string::npos; });
+    };
+    EXPECT_TRUE(is_warned({}));
+    EXPECT_TRUE(is_warned(ShadowLines())) << "as with --dm-lines auto";
+    EXPECT_FALSE(is_warned(ShadowLines{.kind = ShadowLines::Kind::strongest, .count = 3}));
+    EXPECT_FALSE(is_warned(ShadowLines{.kind = ShadowLines::Kind::all}));
+}
+
 TEST(DiscontinuityMesh, SourceLayersMeetTheRequestedErrorAlsoWithReflections) {
     for (const int bounces : {0, -1}) {
         SolveOptions options{.method = Method::discontinuity, .bounces = bounces, .error_interpolant = 0.02};
         options.discontinuity.layers = true;
         const Solution s = solved(built_scene("boxes", {{"lights", "2"}}), options);
         ASSERT_EQ(layers_of(s).sources.size(), 2u);
-        ASSERT_FALSE(s.discontinuity.empty());
+        EXPECT_TRUE(s.discontinuity.empty());
         EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
         EXPECT_LE(error_of(s).rms, 0.02);
         EXPECT_GT(s.statistics.figures.at("layer_bytes"), 0);
         EXPECT_LT(2 * s.statistics.figures.at("layer_bytes"), s.statistics.figures.at("winged_edge_bytes"));
-        // Files store the single mesh that --layers off would yield.
+        // The single mesh is that of --layers off.
         Solution merged = s;
+        ASSERT_TRUE(make_requested_mesh(merged));
         merged.layers = {};
         EXPECT_LE(error_of(merged).rms, 0.02);
+        options.discontinuity.layers = false;
+        EXPECT_EQ(merged.discontinuity.values,
+                  solved(built_scene("boxes", {{"lights", "2"}}), options).discontinuity.values);
+        // Both measure the absorbed light, of meshes with 2% error.
+        EXPECT_NEAR(s.statistics.energy.absorbed,
+                    solved(built_scene("boxes", {{"lights", "2"}}), options).statistics.energy.absorbed,
+                    0.02 * s.statistics.energy.absorbed);
     }
 }
 

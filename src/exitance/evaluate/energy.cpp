@@ -120,6 +120,19 @@ double escaping(const Stage& stage, const Each& each) {
     return rays.empty() ? 0 : total * static_cast<double>(count) / static_cast<double>(rays.size());
 }
 
+/// Calls visit(area, E, place) for the direct light of all layers; the power in `place` is not set.
+template <class Visit>
+void visit_layers(const Solution& solution, const Visit& visit) {
+    const Spectrum share = Spectrum(1.0) - solution.direct_share;
+    for (std::size_t i = 0; i < solution.layers->triangle_count(); ++i) {
+        const QuadraticTriangle t = solution.layers->triangle(solution.scene, i, share);
+        const Point& a = t.corners[0];
+        const Patch patch{a, t.corners[1] - a, t.corners[2] - a, Patch::Shape::triangle};
+        // The mean of a quadratic polynomial is that of its values at the middles of the edges.
+        visit(patch.area(), (t.values[3] + t.values[4] + t.values[5]) / 3, Leaving{t.region, 0, nullptr, {}, patch});
+    }
+}
+
 /// Calls visit(area, E, place) for all arriving light; the power in `place` is not set.
 template <class Visit>
 void for_arriving(const Solution& solution, const DirectProjection& direct, const Visit& visit) {
@@ -133,7 +146,9 @@ void for_arriving(const Solution& solution, const DirectProjection& direct, cons
         return;
     }
     const auto of = [](const ElementTree& tree, ElementId e) { return Leaving{tree.region(e), 0, &tree, e, {}}; };
-    if (!solution.direct_in_elements)
+    if (solution.layers)
+        visit_layers(solution, visit);
+    else if (!solution.direct_in_elements)
         for (ElementId e : direct.tree.leaves())
             visit(direct.tree.area(e), (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean,
                   of(direct.tree, e));

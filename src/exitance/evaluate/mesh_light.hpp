@@ -15,7 +15,7 @@ class MeshLight {
           share_(light.exact_share()),
           triangles_(solution_.discontinuity, solution_.scene) {}
 
-    bool empty() const { return solution_.discontinuity.empty(); }
+    bool empty() const { return solution_.discontinuity.empty(); }  ///< True if there is no single mesh.
     bool has_layers() const { return solution_.layers != nullptr; }
     /// Irradiance, W/m^2.
     Spectrum at(RegionId region, const Point& x) const {

@@ -6,9 +6,11 @@
 #include "exitance/lab/growing_cells/cell_function.hpp"
 #include "exitance/lab/growing_cells/cells_method.hpp"
 #include "exitance/lab/layers/source_layers.hpp"
+#include "exitance/lab/layers/winged_edge_bytes.hpp"
 #include "exitance/lab/local_passes/solve_by_lines.hpp"
 #include "exitance/lab/tasks/solve_by_tasks.hpp"
 #include "exitance/methods/extensions.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 namespace exitance {
 namespace {

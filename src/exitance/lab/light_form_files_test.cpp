@@ -2,7 +2,7 @@
 
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/lab/growing_cells/cell_function.hpp"
-#include "exitance/lab/layers/light_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 #include "support/sample_solution.hpp"
 #include "support/temporary_folder.hpp"
 

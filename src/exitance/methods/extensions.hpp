@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,16 +14,20 @@ namespace exitance {
 /// Direct light as the sum of one mesh per source.
 struct LayeredLight {
     LightFormPointer form;
-    double error = 0;  ///< Relative error of the sum, like DiscontinuityReport::error.
-    bool interrupted = false;
+    DiscontinuityReport report = {};             ///< Error of the sum; sums of numbers and times over the meshes.
     std::map<std::string, double> figures = {};  ///< Numbers for the statistics, by their JSON keys.
 };
+
+/// Receives the layers of the sources so far, after each source.
+using ShowLayers = std::function<void(const LightFormPointer& layers)>;
 
 /// Ways of discontinuity meshing beyond the engine's own.
 struct DiscontinuityExtension {
     /// Sets the cutter and the blocker search that the options select.
     void (*choose)(const DiscontinuityChoice& choice, DiscontinuityOptions& options);
-    LayeredLight (*make_layers)(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop);
+    /// Makes the layers. They record the options of the single mesh (`solve`). `show` may be empty.
+    LayeredLight (*make_layers)(const Stage& stage, const DiscontinuityOptions& options, const SolveOptions& solve,
+                                const ShowLayers& show, const StopRequest& stop);
     /// Numbers for the statistics of the same light as a single mesh, by their JSON keys.
     std::map<std::string, double> (*figures)(const SixNodeMesh& mesh);
 };

@@ -43,9 +43,12 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
             return named.error();
     if (const Result<void> carried = check_carried_light(scene, *settled); !carried) return carried.error();
     const Stopwatch watch;
+    // Snapshots of the standard form are those of layers; they change nothing in its attempts.
+    const ShowLight none, &interactive = settled->snapshots.any() ? none : show;
+    const ShowLight& layers = settled->snapshots.any() ? show : none;
     Result<Solution> solution =
         form_of(*settled) == Form::standard
-            ? StandardSolver(std::move(scene), *settled, progress, stop, checkpoints, show).run()
+            ? StandardSolver(std::move(scene), *settled, progress, stop, checkpoints, interactive, layers).run()
             : PublishedSolver(std::move(scene), *settled, progress, stop, checkpoints, show).run();
     if (!solution) return solution;
     solution->statistics.seconds[RunPart::total] = watch.seconds();

@@ -27,7 +27,8 @@ using ShowLight = std::function<void(Solution)>;
 /// `show` is called after every attempt except the last, which is returned. The first attempt then aims at a relative
 /// error of 0.32 (`recognizable_error`). Each further attempt continues from the last one and aims at 0.4 times its
 /// error, or at the requested error if that is near. Not with checkpoints. With a published form, `show` is called when
-/// `options.snapshots` says, with the light of the form's elements, before any gather, and without energies.
+/// `options.snapshots` says, with the light of the form's elements, before any gather, and without energies. With
+/// layers and `options.snapshots`, `show` is called after each source instead, with the layers of the sources so far.
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
                              CheckpointStore* checkpoints = nullptr, const ShowLight& show = {});
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "exitance/scene/scene.hpp"
 
@@ -33,6 +34,11 @@ class LightForm {
     virtual std::size_t triangle_count() const { return 0; }
     /// Triangle `i` with its values multiplied by `weight`.
     virtual QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const;
+
+    /// Returns this light after its lamps were dimmed: each light group is multiplied by its factor, which counts from
+    /// the undimmed light. Null if the representation does not separate these groups.
+    using GroupFactors = std::span<const std::pair<std::string, double>>;
+    virtual std::shared_ptr<const LightForm> dimmed(GroupFactors) const { return {}; }
 
     /// Returns the whole representation as bytes, which the `unpack` of its kind reads on a machine of the same type.
     virtual std::string packed() const = 0;

@@ -161,8 +161,8 @@ struct Solution {
     /// E_dir + E_ind on a discontinuity mesh, if the method made one. Then it is exported, and `interpolant`
     /// approximates it by linear triangles for other uses.
     SixNodeMesh discontinuity = {};
-    /// E_dir as one mesh per source, if requested. Then their sum with the elements' light is used wherever no single
-    /// mesh is needed; `discontinuity` remains for files and pictures of one mesh.
+    /// E_dir as one mesh per source, if requested. Then `discontinuity` is empty until a single mesh is requested
+    /// (`make_requested_mesh`), and `interpolant` follows from the layers and `indirect` (`elements_of_layers`).
     LightFormPointer layers = {};
     /// Light of a method that has a representation of its own (growing cells). If `delivers_own_form`, it is evaluated
     /// instead of `indirect`, which is then its projection on elements.

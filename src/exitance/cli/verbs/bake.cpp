@@ -14,6 +14,7 @@
 #include "exitance/io/scenes/textures/normal_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/processes/result_of_all.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 
@@ -188,10 +189,12 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
         return terminal.fail(Error{ErrorCode::usage, "directions are those of arriving light", "--directional",
                                    "use --quantity irradiance"});
     LightGroups groups;
-    const Result<Solution> solution =
+    Result<Solution> solution =
         all_or_none(load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr));
     if (!solution) return terminal.fail(solution.error());
     if (arguments.light_groups && groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
+    if (groups.empty())  // light maps of groups are those of elements
+        if (const Result<void> made = make_requested_mesh(*solution); !made) return terminal.fail(made.error());
     if (const Result<void> kept = by_first([&] { return check_model(arguments, solution->scene); }); !kept)
         return terminal.fail(kept.error());
     const CurvedFaces curved = find_curved_faces(arguments, solution->scene);

@@ -6,14 +6,17 @@
 #include "exitance/io/export/export_links.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 
 namespace exitance {
 
 /// Runs `exitance export SOLUTION -o FILE`.
 ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
-    const Result<Solution> solution = load_solution(arguments.solution);
+    Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
+    if (arguments.links.empty())
+        if (const Result<void> made = make_requested_mesh(*solution); !made) return terminal.fail(made.error());
     const std::string scene_file = find_scene_file(solution->scene, arguments.solution);
     if (const Result<void> kept = check_scene_is_kept(arguments.output, scene_file); !kept)
         return terminal.fail(kept.error());

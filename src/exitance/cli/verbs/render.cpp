@@ -19,9 +19,10 @@
 #include "exitance/io/pictures/mesh_colours.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/lab/layers/light_layers.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/processes/result_of_all.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -302,8 +303,10 @@ ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunctio
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     set_threads(arguments.threads);
-    const Result<Solution> solution = all_or_none(load_solution(arguments.solution));
+    Result<Solution> solution = all_or_none(load_solution(arguments.solution));
     if (!solution) return terminal.fail(solution.error());
+    if (arguments.shadow_classes || !arguments.mesh.empty())
+        if (const Result<void> made = make_requested_mesh(*solution); !made) return terminal.fail(made.error());
 
     if (arguments.shadow_classes && solution->discontinuity.empty())
         return terminal.fail(Error{ErrorCode::usage, "the solution has no faces with shadow classes",

@@ -18,6 +18,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/what_if/light_groups/keep_light_groups.hpp"
 
@@ -97,6 +98,8 @@ ExitCode view_solutions(const ViewArguments& arguments, const std::string& page,
     LightGroups groups;
     Result<Solution> solution = load_solution(files[0], Rehearsed::not_yet, &groups);
     if (!solution) return terminal.fail(solution.error());
+    if (groups.empty())  // dimmed light is that of elements
+        if (const Result<void> made = make_requested_mesh(*solution); !made) return terminal.fail(made.error());
     unit_of(arguments.unit, solution->scene, terminal);
     gallery.add(std::move(*solution));
     const Scene& scene = gallery.newest()->solution.scene;
@@ -112,6 +115,7 @@ ExitCode view_solutions(const ViewArguments& arguments, const std::string& page,
     if (files.size() == 2) {
         Result<Solution> other = load_solution(files[1]);
         if (!other) return terminal.fail(other.error());
+        if (const Result<void> made = make_requested_mesh(*other); !made) return terminal.fail(made.error());
         const Result<void> fits = check_pair(scene, other->scene, units, files[1]);
         if (!fits) return terminal.fail(fits.error());
         gallery.set_other(std::move(*other));

@@ -61,6 +61,9 @@ class Hdf5Writer {
     /// Declares light to be in lumens: from now on, W in the units of labels becomes lm.
     void use_lumens() { in_lumens_ = true; }
 
+    /// From now on, compresses light values and small sets as well, which takes more time.
+    void pack_tightly() { is_tight_ = true; }
+
     /// Creates a group. It must exist before its members are written. Names are paths from the root, such as
     /// "exitance/scene".
     void make_group(const std::string& name);
@@ -131,6 +134,10 @@ class Hdf5Writer {
     std::int64_t make_set(const std::string& name, std::int64_t file_type, std::span<const std::size_t> shape,
                           std::size_t item_bytes);
     void describe(const std::string& name, Hdf5Label label);
+    /// Data sets of at least this size are compressed, bytes.
+    std::size_t min_compressed_bytes() const;
+    /// True if large sets of a type are deflated. Others get a checksum.
+    bool deflates(Hdf5Type type) const { return is_tight_ || type != Hdf5Type::float32; }
     void set(std::int64_t object, const char* name, const void* data, std::int64_t type, std::int64_t space);
     void fail(const std::string& what);
 
@@ -138,7 +145,7 @@ class Hdf5Writer {
     Result<AtomicFile> output_;
     std::int64_t file_ = -1;  ///< Handle of the library.
     std::string failure_;
-    bool in_lumens_ = false;
+    bool in_lumens_ = false, is_tight_ = false;
 };
 
 /// Reads an HDF5 file that may be damaged or malicious. Sizes are compared with the actual content of the file before

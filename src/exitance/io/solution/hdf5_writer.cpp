@@ -13,8 +13,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t min_compressed_bytes = 4096;  ///< Data sets of at least this size are compressed.
-constexpr std::size_t chunk_bytes = 1 << 18;        ///< A quarter of the library's chunk cache.
+constexpr std::size_t chunk_bytes = 1 << 18;  ///< A quarter of the library's chunk cache.
 
 hid_t text_type(std::size_t length, bool ascii) {
     const hid_t type = H5Tcopy(H5T_C_S1);
@@ -27,11 +26,6 @@ hid_t text_type(std::size_t length, bool ascii) {
 /// Number of rows per chunk.
 std::size_t rows_of_chunk(std::size_t row_bytes, std::size_t rows) {
     return std::clamp<std::size_t>(chunk_bytes / row_bytes, 1, std::max<std::size_t>(rows, 1));
-}
-
-/// Selects the filter: light values (float32) get a checksum, since deflating them is slow and saves only a sixth.
-Hdf5Filters filters_of(Hdf5Type type) {
-    return {H5Tget_size(hdf5_native_type(type)), type != Hdf5Type::float32};
 }
 
 bool is_ascii(std::string_view text) {
@@ -94,6 +88,11 @@ void Hdf5Writer::fail(const std::string& what) {
     if (failure_.empty()) failure_ = "cannot make " + what + hdf5_says();
 }
 
+std::size_t Hdf5Writer::min_compressed_bytes() const {
+    constexpr std::size_t usual = 4096, tight = 512;  // the header of a compressed set has about 100 bytes more
+    return is_tight_ ? tight : usual;
+}
+
 void Hdf5Writer::make_group(const std::string& name) {
     if (!failure_.empty()) return;
     const Hdf5Handle creation(group_creation(H5P_GROUP_CREATE));
@@ -118,14 +117,15 @@ std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_typ
     const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE));
     H5Pset_obj_track_times(creation, false);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-    if (items * item_bytes < min_compressed_bytes) {
+    if (items * item_bytes < min_compressed_bytes()) {
         // small data sets are stored in the header, whose checksum protects them
         if (items > 0) H5Pset_layout(creation, H5D_COMPACT);
     } else if (rank > 0) {
         chunk[0] = rows_of_chunk(items / shape[0] * item_bytes, shape[0]);
         H5Pset_chunk(creation, rank, chunk.data());
-        // The filters set below must agree with `filters_of`.
-        if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0) {
+        // Light values (float32) get a checksum, since deflating them is slow and saves only a sixth if they have
+        // different bands. These filters must agree with those of write_chunks() and flush().
+        if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0 && !deflates(Hdf5Type::float32)) {
             H5Pset_fletcher32(creation);
         } else {
             H5Pset_shuffle(creation);
@@ -156,7 +156,7 @@ void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64
 /// Computes the rows of a few chunks at a time and writes them.
 bool Hdf5Writer::write_chunks(std::int64_t set, Hdf5Type type, std::size_t rows, std::size_t columns,
                               const MakeBlock& make) {
-    const Hdf5Filters filters = filters_of(type);
+    const Hdf5Filters filters{H5Tget_size(hdf5_native_type(type)), deflates(type)};
     const std::size_t row_bytes = columns * filters.item_bytes, together = rows_of_chunk(row_bytes, rows);
     std::vector<std::byte> made;
     for (std::size_t row = 0; row < rows; row += hdf5_chunks_together * together) {
@@ -198,9 +198,9 @@ void Hdf5Writer::append(Hdf5Rows& set, std::span<const std::byte> rows) {
 
 /// Writes the pending rows, and closes the set after its last row.
 void Hdf5Writer::flush(Hdf5Rows& set) {
-    const Hdf5Filters filters = filters_of(set.type);
+    const Hdf5Filters filters{H5Tget_size(hdf5_native_type(set.type)), deflates(set.type)};
     const std::size_t row_bytes = set.columns * filters.item_bytes, count = set.pending.size() / row_bytes;
-    const bool is_small = set.rows * row_bytes < min_compressed_bytes;
+    const bool is_small = set.rows * row_bytes < min_compressed_bytes();
     const std::size_t together = rows_of_chunk(row_bytes, set.rows);
     const bool done =
         is_small ? H5Dwrite(set.set, hdf5_native_type(set.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, set.pending.data()) >= 0
@@ -218,7 +218,7 @@ void Hdf5Writer::write_blocks(const std::string& name, Hdf5Type type, std::size_
     const Hdf5Handle set(
         make_set(name, hdf5_stored_type(type), std::span(extent).first(columns == 1 ? 1 : 2), item_bytes));
     bool is_written = set >= 0;
-    if (is_written && bytes >= min_compressed_bytes) {
+    if (is_written && bytes >= min_compressed_bytes()) {
         is_written = write_chunks(set, type, rows, columns, make);
     } else if (is_written && bytes > 0) {
         std::vector<std::byte> all(bytes);

@@ -2,6 +2,7 @@
 
 #include "exitance/base/version.hpp"
 #include "exitance/discontinuity/discontinuity_mesh.hpp"
+#include "exitance/evaluate/layer_elements.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr std::int64_t first_format = 1, format = 3;
 
 std::vector<LightFormGroup>& known_groups() {
-    static std::vector<LightFormGroup> groups;
+    static std::vector<LightFormGroup> groups{{"layers", write_layers, read_layers}};
     return groups;
 }
 
@@ -22,6 +23,11 @@ bool follows_from_mesh(const Solution& solution) {
     if (solution.discontinuity.empty()) return false;
     const ElementFunction found = linear_elements(solution.discontinuity, solution.scene);
     return found.tree.size() == solution.interpolant.tree.size() && found.values == solution.interpolant.values;
+}
+
+/// True if the exported elements follow from the layers. Those of light groups do not, since they are sums over groups.
+bool follows_from_layers(const Solution& solution, const LightGroups* groups) {
+    return solution.layers && solution.discontinuity.empty() && (!groups || groups->empty());
 }
 
 }  // namespace
@@ -40,9 +46,11 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
                             VtkGroup vtk) {
     Hdf5Writer file(path);
     if (solution.scene.is_photometric()) file.use_lumens();
-    if (vtk == VtkGroup::written) write_vtkhdf(file, solution);
+    const bool is_of_layers = follows_from_layers(solution, groups);
+    if (is_of_layers) file.pack_tightly();
+    if (vtk == VtkGroup::written && !is_of_layers) write_vtkhdf(file, solution);
     file.make_group("exitance");
-    const bool omits_interpolant = follows_from_mesh(solution);
+    const bool omits_interpolant = is_of_layers || follows_from_mesh(solution);
     file.set_attribute("exitance", "format", format);
     file.set_attribute("exitance", "program_version", std::string_view(program_version));
     file.set_attribute("exitance", "bands", static_cast<std::int64_t>(bands));
@@ -97,20 +105,22 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
     }
     if (file.has("exitance/discontinuity"))
         solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions.size());
-    if (solution.discontinuity.empty() || file.has("exitance/interpolant"))
-        solution.interpolant = read_function(file, "exitance/interpolant", regions);
-    else if (!file.failed())
-        solution.interpolant = linear_elements(solution.discontinuity, solution.scene);
     for (const LightFormGroup& form : light_form_groups())
         if (const std::string group = std::string("exitance/") + form.name; file.has(group))
             form.read(file, group, solution);
+    solution.statistics = read_statistics(file, "exitance/statistics");
+    const bool is_of_layers = solution.layers && solution.discontinuity.empty();
+    if (file.has("exitance/interpolant") || (solution.discontinuity.empty() && !is_of_layers))
+        solution.interpolant = read_function(file, "exitance/interpolant", regions);
+    else if (!file.failed() && !is_of_layers)
+        solution.interpolant = linear_elements(solution.discontinuity, solution.scene);
     if (file.has("exitance/links")) solution.links = read_links(file, "exitance/links", regions);
     if (groups && file.has("exitance/groups") && !file.failed())
         *groups = read_light_groups(file, "exitance/groups", solution);
-    solution.statistics = read_statistics(file, "exitance/statistics");
     if (file.failed()) return file.error();
     for (const ElementTree* tree : {&solution.indirect.tree, &solution.interpolant.tree})
         if (const auto nonsense = find_nonsense(*tree, solution.scene)) return wrong("is damaged: " + *nonsense);
+    if (is_of_layers && solution.interpolant.tree.size() == 0) solution.interpolant = elements_of_layers(solution);
     return solution;
 }
 

@@ -13,8 +13,9 @@ struct LightGroups;
 enum class VtkGroup : std::uint8_t { written, left_out };
 
 /// Writes a solution as HDF5: /VTKHDF for other programs, and /exitance, from which it is restored bit for bit. Equal
-/// solutions give equal files, except for /exitance/statistics. Light groups are included if `groups` is not null. The
-/// file appears whole or not at all. Error: ErrorCode::cannot_write.
+/// solutions give equal files, except for /exitance/statistics. Solutions with layers and without light groups have no
+/// /VTKHDF and no elements of the export, which follow from the layers. Light groups are included if `groups` is not
+/// null. The file appears whole or not at all. Error: ErrorCode::cannot_write.
 Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups = nullptr,
                             VtkGroup vtk = VtkGroup::written);
 

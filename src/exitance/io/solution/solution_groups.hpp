@@ -66,6 +66,11 @@ KeptLinks read_links(Hdf5Reader& file, const std::string& group, const Field<Reg
 void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNodeMesh& mesh);
 SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
+/// Direct light as one mesh per source. The reader checks every count and index: unless `file.failed()`, the layers
+/// that it adds to the solution are safe to use. Nothing is written for a solution without layers.
+void write_layers(Hdf5Writer& file, const std::string& group, const Solution& solution);
+void read_layers(Hdf5Reader& file, const std::string& group, Solution& solution);
+
 /// A group of a solution's file for a LightForm, which the library that defines the form adds.
 struct LightFormGroup {
     const char* name;  ///< Name of the group, below "exitance".

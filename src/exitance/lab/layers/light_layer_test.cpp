@@ -1,10 +1,11 @@
-#include "exitance/lab/layers/light_layer.hpp"
+#include "exitance/solution/layers/light_layer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "exitance/base/random.hpp"
+#include "exitance/lab/layers/winged_edge_bytes.hpp"
 
 namespace exitance {
 namespace {

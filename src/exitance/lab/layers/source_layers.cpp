@@ -3,45 +3,103 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <set>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/discontinuity/exact_places.hpp"
+#include "exitance/lab/layers/winged_edge_bytes.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
+#include "exitance/scene/emitter_groups.hpp"
+#include "exitance/what_if/light_groups/group_direct.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 namespace {
 
-/// The sources of one layer: emitters, and optionally point and parallel lights.
+/// The source of one layer: an emitter, or other emitters together.
 struct LayerSource {
-    RegionId region;  ///< Region that emits; none if there are several emitters, or if it is not a region.
-    std::vector<std::uint32_t> emitters;
-    bool beams = false;
+    RegionId region;                      ///< Region that emits; none for other emitters.
+    std::vector<std::uint32_t> emitters;  ///< Emitters of the scene with this source's lights only.
+    std::string group;                    ///< Light group; empty if it has several.
+    const Scene* lit;                     ///< The scene with the lights of this group only, or with all lights.
 };
 
-/// One layer for each of the brightest emitters, in the order of the scene, then one for all others together.
-std::vector<LayerSource> sources_of(const Stage& stage) {
-    constexpr std::size_t max_single_layers = 64;  // limit, since each layer processes all regions
-    const auto& emitters = stage.direct.emitters();
-    const auto power = [&](std::uint32_t e) {
-        return mean(emitters[e].exitance) * stage.scene.regions()[emitters[e].region].area;
-    };
-    std::vector<std::uint32_t> bright;
-    LayerSource rest{.region = RegionId(), .emitters = {}, .beams = !stage.direct.beams().empty()};
-    for (std::uint32_t e = 0; e < emitters.size(); ++e)
-        (stage.direct.is_distant(e) ? rest.emitters : bright).push_back(e);
-    std::stable_sort(bright.begin(), bright.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return power(a) > power(b); });
-    if (bright.size() > max_single_layers) {
-        rest.emitters.insert(rest.emitters.end(), bright.begin() + max_single_layers, bright.end());
-        std::sort(rest.emitters.begin(), rest.emitters.end());
-        bright.resize(max_single_layers);
+/// The sources of a stage's layers, and the scenes of single light groups that they need.
+class LayerSources {
+  public:
+    explicit LayerSources(const Stage& stage) : stage_(stage) {
+        const DirectLight& direct = stage.direct;
+        const std::vector<EmitterGroup> groups = separate_groups();
+        for (const std::uint32_t e : brightest()) {
+            const RegionId region = direct.emitters()[e].region;
+            sources_.push_back({region, {e}, group_of(groups, region), &stage.scene});
+            is_single_.insert(region.value);
+        }
+        const bool has_rest = direct.emitters().size() > is_single_.size() || !direct.beams().empty();
+        if (!has_rest) return;
+        if (groups.size() < 2) {
+            add_rest(direct, groups.empty() ? std::string() : groups.front().name, stage.scene);
+            return;
+        }
+        for (const EmitterGroup& group : groups) {
+            const Scene& lit = *scenes_.emplace_back(std::make_unique<Scene>(alone(stage.scene, group)));
+            add_rest(DirectLight(lit, stage.occluders), group.name, lit);
+        }
     }
-    std::sort(bright.begin(), bright.end());
-    std::vector<LayerSource> out;
-    for (const std::uint32_t e : bright) out.push_back({emitters[e].region, {e}, false});
-    if (!rest.emitters.empty() || rest.beams) out.push_back(std::move(rest));
-    return out;
-}
+
+    const std::vector<LayerSource>& all() const { return sources_; }
+
+  private:
+    /// Light groups, if each emitting material belongs to a single one of them.
+    std::vector<EmitterGroup> separate_groups() const {
+        std::vector<EmitterGroup> groups = find_emitter_groups(stage_.scene);
+        std::set<std::uint32_t> known;
+        for (const EmitterGroup& group : groups)
+            for (const MaterialId m : group.materials)
+                if (!known.insert(m.value).second) return {};
+        return groups.size() <= max_light_groups ? std::move(groups) : std::vector<EmitterGroup>();
+    }
+
+    std::string group_of(const std::vector<EmitterGroup>& groups, RegionId region) const {
+        const MaterialId material = stage_.scene.regions()[region].material;
+        for (const EmitterGroup& group : groups)
+            if (std::find(group.materials.begin(), group.materials.end(), material) != group.materials.end())
+                return group.name;
+        return {};
+    }
+
+    /// The emitters that get a layer of their own, in the order of the scene.
+    std::vector<std::uint32_t> brightest() const {
+        constexpr std::size_t max_single_layers = 64;  // limit, since each layer processes all regions
+        const auto& emitters = stage_.direct.emitters();
+        const auto power = [&](std::uint32_t e) {
+            return mean(emitters[e].exitance) * stage_.scene.regions()[emitters[e].region].area;
+        };
+        std::vector<std::uint32_t> out;
+        for (std::uint32_t e = 0; e < emitters.size(); ++e)
+            if (!stage_.direct.is_distant(e)) out.push_back(e);
+        std::stable_sort(out.begin(), out.end(), [&](std::uint32_t a, std::uint32_t b) { return power(a) > power(b); });
+        if (out.size() > max_single_layers) out.resize(max_single_layers);
+        std::sort(out.begin(), out.end());
+        return out;
+    }
+
+    /// Adds one source for all emitters and punctual lights of a scene that have no layer of their own.
+    void add_rest(const DirectLight& direct, std::string group, const Scene& lit) {
+        LayerSource rest{RegionId(), {}, std::move(group), &lit};
+        for (std::uint32_t e = 0; e < direct.emitters().size(); ++e)
+            if (direct.is_distant(e) || !is_single_.contains(direct.emitters()[e].region.value))
+                rest.emitters.push_back(e);
+        if (!rest.emitters.empty() || !direct.beams().empty()) sources_.push_back(std::move(rest));
+    }
+
+    const Stage& stage_;
+    std::set<std::uint32_t> is_single_;  ///< Regions that have a layer of their own.
+    std::vector<std::unique_ptr<const Scene>> scenes_;
+    std::vector<LayerSource> sources_;
+};
 
 /// A region's triangles in its own plane, once per band; only the values differ.
 std::array<LayerTriangles, bands> flat_triangles(const SixNodeMesh& mesh, std::span<const std::uint32_t> triangles,
@@ -142,29 +200,42 @@ void add_sheets(const SixNodeMesh& mesh, const Scene& scene, std::uint32_t sourc
     report.triangles += mesh.size(), report.winged_edge_bytes += winged_edge_bytes(mesh);
 }
 
-}  // namespace
-
-std::size_t winged_edge_bytes(const SixNodeMesh& mesh) {
-    std::vector<bool> is_corner(mesh.points.size()), is_middle(mesh.points.size());
-    for (const auto& n : mesh.nodes)
-        for (std::size_t k = 0; k < 3; ++k) is_corner[n[k]] = is_middle[n[3 + k]] = true;
-    const auto count = [](const std::vector<bool>& of) {
-        return static_cast<std::size_t>(std::count(of.begin(), of.end(), true));
-    };
-    return count(is_corner) * sizeof(WingedEdgeMesh::Vertex) + count(is_middle) * sizeof(WingedEdgeMesh::Edge) +
-           mesh.size() * sizeof(WingedEdgeMesh::Face);
+/// Adds the numbers and times of one mesh to those of all meshes.
+void add_report(const DiscontinuityReport& own, LayersReport& sum) {
+    DiscontinuityCounts& counts = sum.counts;
+    const auto before = static_cast<double>(counts.triangles), more = static_cast<double>(own.counts.triangles);
+    if (before + more > 0) {
+        counts.mean_radius_ratio =
+            (before * counts.mean_radius_ratio + more * own.counts.mean_radius_ratio) / (before + more);
+        sum.candidate_share = (before * sum.candidate_share + more * own.candidate_share) / (before + more);
+    }
+    for (std::size_t DiscontinuityCounts::*const count :
+         {&DiscontinuityCounts::d0, &DiscontinuityCounts::d1, &DiscontinuityCounts::d2, &DiscontinuityCounts::eee,
+          &DiscontinuityCounts::left_out, &DiscontinuityCounts::wedges, &DiscontinuityCounts::lit,
+          &DiscontinuityCounts::penumbra, &DiscontinuityCounts::umbra, &DiscontinuityCounts::triangles})
+        counts.*count += own.counts.*count;
+    sum.plane_tests += own.plane_tests, sum.fragments += own.fragments, sum.tree_bytes += own.tree_bytes;
+    sum.mesh_seconds += own.mesh_seconds, sum.direct_seconds += own.direct_seconds;
+    sum.parallel += own.parallel;
 }
 
+void sort_by_region(std::vector<LightLayers::Sheet>& sheets) {
+    std::stable_sort(sheets.begin(), sheets.end(),
+                     [](const auto& a, const auto& b) { return a.region.value < b.region.value; });
+}
+
+}  // namespace
+
 LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& options, LayersReport& report,
-                              const StopRequest& stop) {
+                              const StopRequest& stop, const ShowLayers& show) {
     const double share = calibrated::layers_share;
     constexpr double rounding_of_halves = 1.0 / 2048;
     const ExactPlaces places(stage, options.direct_weight, options.indirect, options.seed, stop);
-    const std::vector<LayerSource> sources = sources_of(stage);
+    const LayerSources sources(stage);
     const LightLayer::Form form =
         4 * rounding_of_halves <= options.error ? LightLayer::Form::halves : LightLayer::Form::floats;
     Stage alone(stage.scene);
-    const double together = std::sqrt(static_cast<double>(std::max<std::size_t>(1, sources.size())));
+    const double together = std::sqrt(static_cast<double>(std::max<std::size_t>(1, sources.all().size())));
     DiscontinuityOptions one = options;
     one.indirect = {}, one.direct_weight = Spectrum(1.0), one.secondary = {}, one.safe_points = nullptr;
     one.scale = places.mean_light(), one.brightest = places.largest_light();
@@ -172,19 +243,22 @@ LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& op
     LightLayers out;
     constexpr int max_attempts = 4;
     for (int attempt = 1;; ++attempt) {
+        const double mesh_seconds = report.mesh_seconds, direct_seconds = report.direct_seconds;
         report = {}, out = {};
-        for (const LayerSource& source : sources) {
-            alone.direct = DirectLight(stage.scene, alone.occluders);
-            alone.direct.keep_only(source.emitters, source.beams);
+        report.mesh_seconds = mesh_seconds, report.direct_seconds = direct_seconds;
+        for (const LayerSource& source : sources.all()) {
+            alone.direct = DirectLight(*source.lit, alone.occluders);
+            alone.direct.keep_only(source.emitters, source.region.is_none());
             DiscontinuityReport own;
             const SixNodeMesh mesh = make_discontinuity_mesh(alone, one, own, stop);
             report.interrupted = own.interrupted;
             if (own.interrupted) return {};
             add_sheets(mesh, stage.scene, static_cast<std::uint32_t>(out.sources.size()), form, out.sheets, report);
-            out.sources.push_back(source.region);
+            add_report(own, report);
+            out.sources.push_back(source.region), out.groups.push_back(source.group), out.factors.push_back(1);
+            sort_by_region(out.sheets);
+            if (show && attempt == 1) show(std::make_shared<LayersForm>(out));
         }
-        std::stable_sort(out.sheets.begin(), out.sheets.end(),
-                         [](const auto& a, const auto& b) { return a.region.value < b.region.value; });
         const double error = places.error([&](RegionId r, const Point& p) {
             const Spectrum light = options.direct_weight * light_at(out, stage.scene, r, p);
             return options.indirect ? light + options.indirect(r, p) : light;
@@ -195,11 +269,13 @@ LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& op
     }
 }
 
-LayeredLight make_layered_light(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop) {
+LayeredLight make_layered_light(const Stage& stage, const DiscontinuityOptions& options, const SolveOptions& solve,
+                                const ShowLayers& show, const StopRequest& stop) {
     LayersReport report;
-    LightLayers layers = make_light_layers(stage, options, report, stop);
-    LayeredLight out{.form = {}, .error = report.error, .interrupted = report.interrupted};
+    LightLayers layers = make_light_layers(stage, options, report, stop, show);
+    LayeredLight out{.form = {}, .report = report};
     if (layers.empty()) return out;
+    layers.mesh = describe_mesh(solve);
     out.figures = {{"layer_bytes", static_cast<double>(layers.memory_bytes())},
                    {"winged_edge_bytes", static_cast<double>(report.winged_edge_bytes)},
                    {"layers", static_cast<double>(layers.sources.size())},

@@ -12,7 +12,7 @@
 #include "exitance/base/random.hpp"
 #include "exitance/discontinuity/receiver_curves.hpp"
 #include "exitance/lab/dm_tree/dm_tree.hpp"
-#include "exitance/lab/layers/light_layer.hpp"
+#include "exitance/lab/layers/winged_edge_bytes.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
 
 namespace exitance {

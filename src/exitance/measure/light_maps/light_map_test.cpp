@@ -7,6 +7,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
 #include "exitance/transport/open_points.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
@@ -314,6 +315,7 @@ TEST(LightMap, ShadowEdgesAreIntegratedWithADiscontinuityMesh) {
         if (kind == 1) options.discontinuity.element = MeshElement::clough_tocher;
         if (kind == 2) options.discontinuity.element = {}, options.discontinuity.layers = true;
         Solution s = solved(sharp_shadows(), options);
+        ASSERT_TRUE(make_requested_mesh(s));
         const LightMaps integrated = bake(s, 8);
         if (kind == 0) expected = means_of_many(s, integrated.charts[0]);
         s.discontinuity = {}, s.layers = {};

@@ -40,7 +40,7 @@ double energy_defect_before(const EnergyBalance& energy, const Solution& solutio
         added += area * ((Spectrum(1.0) - solution.scene.material(region).reflectance) * more);
     };
     const Spectrum of_direct = (Spectrum(1.0) - solution.direct_share) * (Spectrum(1.0) - unscaled.direct);
-    if (solution.discontinuity.empty() && !solution.direct_in_elements)
+    if (solution.discontinuity.empty() && !solution.layers && !solution.direct_in_elements)
         for (ElementId e : direct.tree.leaves())
             absorb(direct.tree.region(e), direct.tree.area(e), of_direct * direct.fit[e].mean);
     const ElementTree& tree = solution.indirect.tree;

@@ -41,6 +41,12 @@ inline bool counts_no_reflections(const SolveRequest& r) {
 
 inline constexpr const char* without_counting = "without --bounces N";
 
+inline bool has_layers(const SolveRequest& r) {
+    return r.options.discontinuity.layers == true;
+}
+
+inline constexpr const char* with_layers = "with --layers on";
+
 /// Methods with links between elements of a hierarchy.
 inline Support links_of_hierarchies(const char* values = "") {
     return {{linked, values}, {standard({discontinuity}), values, counts_no_reflections, without_counting}};

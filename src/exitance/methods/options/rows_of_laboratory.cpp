@@ -176,11 +176,14 @@ std::vector<OptionRow> rows_of_published_solvers() {
          .section = "classical"},
         {.name = "--snapshots",
          .value = snapshots(),
-         .does = "Write intermediate solutions S.0001.h5, ...: t=0.5,1 (seconds), shots=10,100 or rounds",
+         .does =
+             "Write intermediate solutions S.0001.h5, ...: t=0.5,1 (seconds), shots=10,100 or rounds (with --layers "
+             "on: after each source)",
          .group = group::published,
          .support = {{every_published | tasks | local_passes, "t"},
                      {published({progressive, substructuring}), "shots"},
-                     {published({matrix, hierarchical, wavelet}) | tasks | local_passes, "rounds"}},
+                     {published({matrix, hierarchical, wavelet}) | tasks | local_passes, "rounds"},
+                     {standard({discontinuity}), "rounds", has_layers, with_layers}},
          .excludes = {{"--relaxation cg|gmres|chebyshev|direct"}, {"--resume"}},
          .section = "-"},
     };
@@ -237,6 +240,8 @@ std::vector<OptionRow> rows_of_structures() {
          .value = on_off(at(&DiscontinuityChoice::layers)),
          .does = "Make one compressed mesh per source, whose light is added up, in place of one mesh for all",
          .initial = "off",
+         .when = "Solutions are then several times smaller; export, view and bake make the mesh for all when they need "
+                 "it",
          .group = group::structures,
          .support = {{standard({discontinuity})}},
          .excludes = {{"--dm-element clough-tocher", "on"}},

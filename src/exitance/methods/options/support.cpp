@@ -91,7 +91,7 @@ std::string selecting_option(const SolveRequest& request) {
         const bool in_published = !supporting_methods(row, Form::published).empty();
         if (in_published && !in_standard) return shown(row, *word);
     }
-    return "--direct";
+    return request.options.snapshots.any() ? "--snapshots" : "--direct";
 }
 
 /// The error for an option that a method and form do not support.
@@ -218,7 +218,8 @@ std::string supporting_here(const OptionRow& row, Form form, const std::string& 
 Form form_of(const SolveOptions& options) {
     if (options.task_engine) return Form::tasks;
     if (options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e) return Form::local_passes;
-    return options.classical.any() || options.snapshots.any() ? Form::published : Form::standard;
+    const bool takes_snapshots = options.snapshots.any() && options.discontinuity.layers != true;
+    return options.classical.any() || takes_snapshots ? Form::published : Form::standard;
 }
 
 bool supports(const OptionRow& row, const SolveRequest& request, MethodForm method_form) {

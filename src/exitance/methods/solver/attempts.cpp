@@ -22,8 +22,8 @@
 namespace exitance {
 
 StandardSolver::StandardSolver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
-                               CheckpointStore* checkpoints, const ShowLight& show)
-    : Solver(std::move(scene), asked, progress, stop, checkpoints, show) {
+                               CheckpointStore* checkpoints, const ShowLight& show, ShowLight shows_layers)
+    : Solver(std::move(scene), asked, progress, stop, checkpoints, show), shows_layers_(std::move(shows_layers)) {
     requested_error_ = options_.error_target();
     if (show && options_.error_demand()) options_.error = std::max(recognizable_error, requested_error_);
 }

@@ -6,6 +6,7 @@
 
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/evaluate/energy.hpp"
+#include "exitance/evaluate/layer_elements.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/solve_report.hpp"
@@ -27,11 +28,12 @@ bool StandardSolver::make_discontinuity() {
     }
     SafePoints points = safe_points();
     const DiscontinuityReport report =
-        add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
+        add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr,
+                               shows_layers_ ? show_layers() : ShowLayers());
     statistics().seconds[RunPart::mesh] += report.mesh_seconds;
     statistics().seconds[RunPart::direct] += report.direct_seconds;
     if (report.interrupted) stop_as_requested();
-    const bool follows_shadows = !solution_.discontinuity.empty();
+    const bool follows_shadows = !solution_.discontinuity.empty() || solution_.layers;
     if (follows_shadows) warn_of_lines();
     // The reported mesh must not depend on whether there was a time limit.
     if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
@@ -39,10 +41,23 @@ bool StandardSolver::make_discontinuity() {
     return follows_shadows;
 }
 
+ShowLayers StandardSolver::show_layers() const {
+    return [this](const LightFormPointer& layers) {
+        Solution shown = solution_;
+        shown.layers = layers;
+        SolveStatistics& s = shown.statistics;
+        s.converged = false, s.relative_error_estimate.reset(), s.relative_error_bound.reset(), s.error_p99.reset();
+        shown.interpolant = elements_of_layers(shown);
+        shows_layers_(std::move(shown));
+    };
+}
+
 void StandardSolver::warn_of_lines() {
     const DiscontinuityCounts& c = *statistics().discontinuity;
     const std::size_t followed = c.d0 + c.d1 + c.d2 + c.eee;
-    if (options_.discontinuity.lines || c.left_out <= followed) return;
+    const auto& lines = options_.discontinuity.lines;
+    const bool are_chosen = lines && lines->kind != ShadowLines::Kind::automatic;
+    if (are_chosen || c.left_out <= followed) return;
     warn(
         fmt::format("the mesh follows {} shadow lines; {} sources, edges and lines were left out, as they change the "
                     "light little or are too many (--dm-lines all leaves none out)",

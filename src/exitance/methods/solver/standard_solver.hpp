@@ -2,6 +2,7 @@
 
 #include "exitance/error/tolerance/accuracy.hpp"
 #include "exitance/evaluate/interpolant.hpp"
+#include "exitance/methods/extensions.hpp"
 #include "exitance/methods/light/next_light.hpp"
 #include "exitance/methods/light/unscaled_light.hpp"
 #include "exitance/methods/solver/body_demand.hpp"
@@ -15,7 +16,7 @@ namespace exitance {
 class StandardSolver final : public Solver {
   public:
     StandardSolver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
-                   CheckpointStore* checkpoints, const ShowLight& show);
+                   CheckpointStore* checkpoints, const ShowLight& show, ShowLight shows_layers);
 
   private:
     Result<void> fit_memory() override;
@@ -119,6 +120,8 @@ class StandardSolver final : public Solver {
     /// Computes direct light on triangles that follow its shadows, and adds the reflected light. Returns false if a
     /// stop request left no time for any triangles; plain elements are then exported.
     bool make_discontinuity();
+    /// Passes the solution with the layers of the sources so far to `shows_layers_`.
+    ShowLayers show_layers() const;
     /// Warns if more is left out than the mesh follows, and the user did not choose the shadow lines.
     void warn_of_lines();
     /// Returns the light to which the error of exported elements is relative, W/m^2.
@@ -127,6 +130,7 @@ class StandardSolver final : public Solver {
     /// attempts.
     ElementFunction plain_elements(InterpolantReport& report, Progress* progress = nullptr) const;
 
+    const ShowLight shows_layers_;  ///< Receives a snapshot after each source of --layers, if requested; else empty.
     double requested_error_ = 0;  ///< Requested error; options_.error is larger while intermediate solutions are shown.
     BodyDemand body_demand_;
     bool fresh_ = true;       ///< True if the method solves in this attempt.

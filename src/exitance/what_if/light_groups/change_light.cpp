@@ -154,6 +154,12 @@ std::vector<double> factors_of_materials(const LightGroups& groups) {
     return factor;
 }
 
+std::vector<std::pair<std::string, double>> factors_of_groups(const LightGroups& groups) {
+    std::vector<std::pair<std::string, double>> out;
+    for (const LightGroup& g : groups.groups) out.emplace_back(g.emitters.name, g.factor);
+    return out;
+}
+
 /// Sets the emission of the scene according to the factors, and the reflectance of every material.
 void relight(Scene& scene, const LightGroups& groups, const std::vector<Spectrum>& reflectance) {
     const std::vector<double> factor = factors_of_materials(groups);
@@ -217,6 +223,7 @@ Result<void> change_light(Solution& solution, LightGroups& groups, const LightCh
         s.relative_error_estimate_worst_room.reset(), s.rooms.clear();
         s.relative_error_estimate_worst_body.reset(), s.bodies.clear();
     }
+    if (solution.layers) solution.layers = solution.layers->dimmed(factors_of_groups(groups));
     solution.links = {}, solution.discontinuity = {}, solution.own_form = {}, solution.delivers_own_form = false;
     return {};
 }

@@ -24,8 +24,8 @@ Result<LightGroups> keep_light_groups(Solution& solution, const SolveOptions& op
     };
     if (stop.requested()) return not_kept("the run was stopped before they were solved");
     const Stopwatch watch;
-    // The discontinuity mesh holds the light of all lamps together. It cannot hold that of a single group.
-    solution.discontinuity = {}, solution.layers = {}, solution.own_form = {}, solution.delivers_own_form = false;
+    // The discontinuity mesh holds the light of all lamps together. It cannot hold that of a single group. Layers can.
+    solution.discontinuity = {}, solution.own_form = {}, solution.delivers_own_form = false;
     Result<LightGroups> groups = solve_light_groups(solution, options, progress, stop);
     if (!groups && stop.requested()) return not_kept(groups.error().message);
     if (!groups) return groups;

@@ -66,9 +66,9 @@ struct LightChange {
 };
 
 /// Changes the light and the scene of a solution, and the groups' factors. The error estimate is composed of the
-/// groups' errors, weighted by their light, and of the stored transport's error for the change. Links, discontinuity
-/// mesh and cells of the old light are removed. Error: usage, for an unknown name (the hint lists the known ones) or a
-/// number out of range; nothing is changed then.
+/// groups' errors, weighted by their light, and of the stored transport's error for the change. Layers are dimmed.
+/// Links, discontinuity mesh and cells of the old light are removed. Error: usage, for an unknown name (the hint lists
+/// the known ones) or a number out of range; nothing is changed then.
 Result<void> change_light(Solution& solution, LightGroups& groups, const LightChange& change);
 
 }  // namespace exitance

@@ -1,4 +1,4 @@
-#include "exitance/lab/layers/light_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -32,7 +32,7 @@ Spectrum sum_of_layers(const LightLayers& layers, const Scene& scene, RegionId r
     if (sheet == layers.sheets.end() || sheet->region != region) return sum;
     const Vec2 place = layer_place(scene.regions()[region], p);
     for (; sheet != layers.sheets.end() && sheet->region == region; ++sheet)
-        if (is_wanted(sheet->source)) sum += sheet->light.at(place) * sheet->colour;
+        if (is_wanted(sheet->source)) sum += layers.factor(sheet->source) * sheet->light.at(place) * sheet->colour;
     return sum;
 }
 
@@ -56,10 +56,10 @@ std::vector<std::uint32_t> named_sources(const LightLayers& layers, const Scene&
     for (std::uint32_t i = 0; i < layers.sources.size(); ++i) {
         const RegionId r = layers.sources[i];
         const bool is_named =
-            r.is_none() ? word == "others"
+            r.is_none() ? word == "others" || (i < layers.groups.size() && layers.groups[i] == word)
                         : scene.material(r).name == word ||
                               scene.groups()[scene.surfaces()[scene.regions()[r].surfaces.front()].group] == word;
-        if (is_number ? i + 1 == number : is_named) out.push_back(i);
+        if (is_number ? i + 1 == number : is_named && !word.empty()) out.push_back(i);
     }
     return out;
 }
@@ -76,7 +76,7 @@ QuadraticTriangle LayersForm::triangle(const Scene& scene, std::size_t i, const 
     const Region& region = scene.regions()[sheet.region];
     const Frame frame(region.plane.n);
     const std::array<Vec2, 3> corners = sheet.light.corners(t);
-    const Spectrum colour = weight * sheet.colour;
+    const Spectrum colour = layers_.factor(sheet.source) * weight * sheet.colour;
     QuadraticTriangle out{.region = sheet.region, .corners = {}, .values = {}};
     for (std::size_t k = 0; k < 3; ++k)
         out.corners[k] = region.loops.front().front() + corners[k].x * frame.u + corners[k].y * frame.v;
@@ -89,7 +89,7 @@ namespace {
 
 template <class Archive>
 void archive_layers(Archive& a, LightLayers& layers) {
-    a(layers.sources);
+    a(layers.sources, layers.groups, layers.factors, layers.mesh);
     std::size_t count = archive_size(a, layers.sheets.size(), 1);
     for (std::size_t i = 0; i < count; ++i) {
         LightLayers::Sheet sheet{.region = {}, .source = 0, .colour = {}, .light = LightLayer(LightLayer::Contents())};
@@ -106,6 +106,19 @@ void archive_layers(Archive& a, LightLayers& layers) {
 }
 
 }  // namespace
+
+LightFormPointer LayersForm::dimmed(GroupFactors factors) const {
+    LightLayers out = layers_;
+    out.factors.assign(out.sources.size(), 1.0);
+    for (std::size_t i = 0; i < out.sources.size(); ++i) {
+        const std::string group = i < out.groups.size() ? out.groups[i] : std::string();
+        const auto known =
+            std::find_if(factors.begin(), factors.end(), [&](const auto& f) { return f.first == group; });
+        if (group.empty() || known == factors.end()) return {};
+        out.factors[i] = known->second;
+    }
+    return std::make_shared<LayersForm>(std::move(out));
+}
 
 std::string LayersForm::packed() const {
     ArchiveWriter writer;

@@ -1,7 +1,9 @@
-#include "exitance/lab/layers/layers_group.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/methods/light/mesh_of_layers.hpp"
+#include "exitance/solution/layers/light_layers.hpp"
 
 namespace exitance {
 namespace {
@@ -109,6 +111,13 @@ void write_layers(Hdf5Writer& file, const std::string& group, const Solution& so
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
     file.write(in("sources"), sources, 1, {"1", "region that emits; 4294967295: all others together"});
+    std::vector<double> factors;
+    std::vector<std::string> groups = layers.groups;
+    groups.resize(layers.sources.size());
+    for (std::uint32_t i = 0; i < layers.sources.size(); ++i) factors.push_back(layers.factor(i));
+    file.write(in("factor"), factors, 1, {"1", "factor by which a source is dimmed"});
+    file.write_texts(in("group"), groups, {"1", "light group of each source; empty: unknown or several"});
+    file.write_text(in("mesh"), layers.mesh, {"1", "options of the single mesh, an option a line"});
     file.write(in("region"), flat.region, 1, {"1", "region of a sheet"});
     file.write(in("source"), flat.source, 1, {"1", "row in sources of a sheet"});
     file.write(in("colour"), flat.colour, bands, {"1", "irradiance by bands for a value of 1"});
@@ -116,16 +125,36 @@ void write_layers(Hdf5Writer& file, const std::string& group, const Solution& so
     file.write(in("box"), flat.box, box_columns, {"m", "of a sheet: least u, v; width, height; scale, W/m^2"});
     file.write(in("counts"), flat.counts, count_columns,
                {"1", "of a sheet: vertices, edges, and triangles in faces, narrow, wide"});
-    file.write(in("vertices"), flat.vertices, 3, {"m", "u, v, and irradiance there, W/m^2"});
-    file.write(in("edges"), flat.edges, 1, {"W/m^2", "irradiance at the middle of an edge"});
-    file.write(in("faces"), flat.faces, 6, {"1", "vertices of a triangle, then its edges 01, 12, 20"});
-    file.write(in("half_vertices"), flat.half_vertices, 3,
-               {"1", "u, v in 65535ths of the box, and bits of a half float, in scales"});
-    file.write(in("half_edges"), flat.half_edges, 1,
-               {"1", "bits of a half float, at the middle of an edge, in scales"});
-    file.write(in("narrow"), flat.narrow, 3, {"1", "vertices of a triangle"});
-    file.write(in("wide"), flat.wide, 3, {"1", "vertices of a triangle"});
+    // Sets of the other form are left out.
+    const auto write = [&](const char* name, const auto& values, std::size_t columns, Hdf5Label label) {
+        if (!values.empty()) file.write(in(name), values, columns, label);
+    };
+    write("vertices", flat.vertices, 3, {"m", "u, v, and irradiance there, W/m^2"});
+    write("edges", flat.edges, 1, {"W/m^2", "irradiance at the middle of an edge"});
+    write("faces", flat.faces, 6, {"1", "vertices of a triangle, then its edges 01, 12, 20"});
+    write("half_vertices", flat.half_vertices, 3,
+          {"1", "u, v in 65535ths of the box, and bits of a half float, in scales"});
+    write("half_edges", flat.half_edges, 1, {"1", "bits of a half float, at the middle of an edge, in scales"});
+    write("narrow", flat.narrow, 3, {"1", "vertices of a triangle"});
+    write("wide", flat.wide, 3, {"1", "vertices of a triangle"});
 }
+
+namespace {
+
+/// Reads what files of older programs lack: factors and groups of the sources, and the options of the single mesh.
+void read_sources(Hdf5Reader& file, const std::string& group, LightLayers& out) {
+    const auto in = [&](const char* name) { return group + "/" + name; };
+    if (!file.has(in("factor"))) return;
+    out.factors = file.read<double>(in("factor"), 1, out.sources.size());
+    for (const double factor : out.factors)
+        if (!(factor >= 0) || !std::isfinite(factor)) return file.fail(in("factor"), "is not a factor");
+    out.groups = file.read_texts(in("group"), out.sources.size());
+    out.mesh = file.read_text(in("mesh"));
+    if (const Result<SolveOptions> options = read_mesh_options(out.mesh); !options)
+        file.fail(in("mesh"), options.error().message);
+}
+
+}  // namespace
 
 void read_layers(Hdf5Reader& file, const std::string& group, Solution& solution) {
     const std::size_t region_count = solution.scene.regions().size();
@@ -139,11 +168,12 @@ void read_layers(Hdf5Reader& file, const std::string& group, Solution& solution)
     flat.form = file.read<std::uint8_t>(in("form"), 1, sheets);
     flat.box = file.read<double>(in("box"), box_columns, sheets);
     flat.counts = file.read<std::uint32_t>(in("counts"), count_columns, sheets);
-    flat.vertices = file.read<float>(in("vertices"), 3), flat.edges = file.read<float>(in("edges"));
-    flat.faces = file.read<std::uint32_t>(in("faces"), 6), flat.wide = file.read<std::uint32_t>(in("wide"), 3);
-    flat.half_vertices = file.read<std::uint16_t>(in("half_vertices"), 3);
-    flat.half_edges = file.read<std::uint16_t>(in("half_edges"));
-    flat.narrow = file.read<std::uint16_t>(in("narrow"), 3);
+    const auto read = [&]<class T>(const char* name, std::vector<T>& values, std::size_t columns) {
+        if (file.has(in(name))) values = file.read<T>(in(name), columns);
+    };
+    read("vertices", flat.vertices, 3), read("edges", flat.edges, 1), read("faces", flat.faces, 6);
+    read("half_vertices", flat.half_vertices, 3), read("half_edges", flat.half_edges, 1);
+    read("narrow", flat.narrow, 3), read("wide", flat.wide, 3);
     if (file.failed()) return;
     const auto wrong = [&](const std::string& what) { return file.fail(in("counts"), what); };
     LightLayers out;
@@ -151,6 +181,8 @@ void read_layers(Hdf5Reader& file, const std::string& group, Solution& solution)
         out.sources.emplace_back(r);
         if (!out.sources.back().is_none() && r >= region_count) return wrong("comes from a region that does not exist");
     }
+    read_sources(file, group, out);
+    if (file.failed()) return;
     SheetReaders readers(flat);
     for (std::size_t s = 0; s < sheets; ++s) {
         Contents c;

@@ -1,4 +1,4 @@
-#include "exitance/lab/layers/light_layer.hpp"
+#include "exitance/solution/layers/light_layer.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -81,16 +81,15 @@ double LayerTriangles::at(std::size_t t, Vec2 st) const {
                         st);
 }
 
-std::size_t winged_edge_bytes(const LayerTriangles& triangles) {
+std::size_t LayerTriangles::edge_count() const {
     EdgeNumbers numbers;
     std::array<bool, 3> fresh{};
     std::size_t edges = 0;
-    for (const auto& c : triangles.corners) {
+    for (const auto& c : corners) {
         numbers.add(c, fresh);
         edges += static_cast<std::size_t>(std::count(fresh.begin(), fresh.end(), true));
     }
-    return triangles.points.size() * sizeof(WingedEdgeMesh::Vertex) + edges * sizeof(WingedEdgeMesh::Edge) +
-           triangles.corners.size() * sizeof(WingedEdgeMesh::Face);
+    return edges;
 }
 
 LightLayer::LightLayer(const LayerTriangles& from, Form form) {

@@ -7,7 +7,7 @@
 
 #include "exitance/base/ids.hpp"
 #include "exitance/base/spectrum.hpp"
-#include "exitance/lab/layers/light_layer.hpp"
+#include "exitance/solution/layers/light_layer.hpp"
 #include "exitance/solution/solution.hpp"
 
 namespace exitance {
@@ -21,11 +21,16 @@ struct LightLayers {
         Spectrum colour;           ///< Light per unit of the layer's value.
         LightLayer light;
     };
-    /// The emitting regions, each a source of its own. The last entry, none, represents all other emitters together.
+    /// The emitting regions, each a source of its own. The last entries, none, represent all other emitters: one entry
+    /// per light group, or a single one if the groups share materials or are too many.
     std::vector<RegionId> sources;
-    std::vector<Sheet> sheets;  ///< Sorted by region, then by source.
+    std::vector<Sheet> sheets;        ///< Sorted by region, then by source.
+    std::vector<std::string> groups;  ///< Light group of each source; empty if unknown, or if it has several.
+    std::vector<double> factors;      ///< Factor by which each source is dimmed; 1 if it is missing.
+    std::string mesh;                 ///< Options of the single mesh (`describe_mesh`); empty: it cannot be made.
 
     bool empty() const { return sources.empty(); }
+    double factor(std::uint32_t source) const { return source < factors.size() ? factors[source] : 1.0; }
     std::size_t size() const;          ///< Number of stored triangles.
     std::size_t memory_bytes() const;  ///< Memory of the compressed layers.
 };
@@ -38,7 +43,7 @@ Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region
                   std::span<const std::uint32_t> among);
 
 /// Returns the sources that a word selects, as indices in `sources`, ascending: one by its number from 1, or all whose
-/// material or group has this name; "others" selects the layer of all other emitters. Empty if there is none.
+/// material or group has this name; "others" selects the layers of all other emitters. Empty if there is none.
 std::vector<std::uint32_t> named_sources(const LightLayers& layers, const Scene& scene, const std::string& word);
 
 /// Layers as the engine evaluates and keeps them.
@@ -54,6 +59,7 @@ class LayersForm final : public LightForm {
     }
     std::size_t triangle_count() const override { return first_.back(); }
     QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const override;
+    LightFormPointer dimmed(GroupFactors factors) const override;
     std::string packed() const override;
     static LightFormPointer unpack(std::string_view bytes);
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "exitance/base/vec.hpp"
-#include "exitance/lab/dm_tree/winged_edge_mesh.hpp"
 
 namespace exitance {
 
@@ -21,10 +20,8 @@ struct LayerTriangles {
 
     bool is_dark(std::size_t triangle) const;
     double at(std::size_t triangle, Vec2 st) const;  ///< Value at barycentric coordinates (1 - s - t, s, t).
+    std::size_t edge_count() const;                  ///< Number of edges; O(triangles).
 };
-
-/// Size of a winged-edge mesh of these triangles with 32-bit indices and doubles, bytes.
-std::size_t winged_edge_bytes(const LayerTriangles& triangles);
 
 /// Light of one source on a receiver. Layers of several sources are added, so that their meshes need not be merged.
 /// Dark triangles are omitted: the light is 0 where there is no triangle. Source: [Gatenby95].
