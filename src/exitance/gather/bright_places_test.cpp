@@ -6,6 +6,7 @@
 
 #include "exitance/gather/gather.hpp"
 #include "support/built_scene.hpp"
+#include "support/test_scenes.hpp"
 
 namespace exitance {
 namespace {
@@ -112,7 +113,7 @@ TEST(BrightPlaces, AReflectorOfManyFacetsIsCoveredByABox) {
         room.b.aim_at(bright);
         const auto [aimed, aimed_spread] = gathered();
         EXPECT_NEAR(aimed, without, 4 * std::sqrt((spread + aimed_spread) / count));
-        // Of 64 rays, 0.4 meet the reflector by chance. A third of the aimed ones do.
+        // By chance 0.4 of 64 rays meet the reflector, and a third of the aimed ones.
         EXPECT_LT(aimed_spread, spread / 10);
     }
 }

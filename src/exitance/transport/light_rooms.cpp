@@ -53,19 +53,28 @@ double LightRooms::importance(const ElementTree& tree, ElementId e) const {
     return static_cast<double>(importance_[locator_->find(tree.region(e), tree.patch(e).at(tree.centre(e))).element]);
 }
 
-/// Sets the room of every leaf. Numbers rooms by descending area.
-void LightRooms::set(std::span<const std::size_t> room_of, std::size_t rooms, const ElementTree& tree,
-                     const LeafNumbering& numbering) {
-    std::vector<double> area(rooms);  // m^2
-    for (std::size_t i = 0; i < room_of.size(); ++i) area[room_of[i]] += tree.area(numbering.leaves[i]);
+/// Sets the room of every leaf. Numbers rooms by descending area. Sides that no light reaches do not count: errors are
+/// not relative to their area.
+void LightRooms::set(std::span<const std::size_t> room_of, std::size_t rooms, const Stage& stage,
+                     const ElementTree& tree, const LeafNumbering& numbering) {
+    std::vector<double> area(rooms), all(rooms);  // m^2
+    for (std::size_t i = 0; i < room_of.size(); ++i) {
+        const ElementId e = numbering.leaves[i];
+        all[room_of[i]] += tree.area(e);
+        if (!stage.is_unlit(tree.region(e))) area[room_of[i]] += tree.area(e);
+    }
+    const auto lit_rooms = static_cast<double>(
+        std::max<std::ptrdiff_t>(1, std::count_if(area.begin(), area.end(), [](double a) { return a > 0; })));
+    const double mean_area = std::accumulate(area.begin(), area.end(), 0.0) / lit_rooms;
+    for (std::size_t room = 0; room < rooms; ++room)
+        if (!(area[room] > 0)) area[room] = all[room];
     std::vector<std::size_t> falling(rooms), number(rooms);
     std::iota(falling.begin(), falling.end(), std::size_t{0});
     std::stable_sort(falling.begin(), falling.end(), [&](auto a, auto b) { return area[a] > area[b]; });
-    areas_.clear(), mean_area_ = 0;
+    areas_.clear(), mean_area_ = mean_area;
     for (std::size_t k = 0; k < rooms; ++k) {
         number[falling[k]] = k;
         areas_.push_back(area[falling[k]]);
-        mean_area_ += areas_.back() / static_cast<double>(rooms);
     }
     room_of_.resize(tree.size());
     for (std::size_t i = 0; i < room_of.size(); ++i)
@@ -132,11 +141,11 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
         for (std::uint32_t i : rooms[room]) room_of[i] = room;
     std::vector<double> light;
     if (rooms.size() > 1) {
-        out.set(room_of, rooms.size(), tree, numbering);
+        out.set(room_of, rooms.size(), stage, tree, numbering);
         for (std::size_t i = 0; i < room_of.size(); ++i) room_of[i] = out.room_of_[numbering.leaves[i]];
         light = coarse_light(stage, out, tree, numbering, rows);
         if (const auto given = given_to_brighter(rows, tree, numbering, light, room_of); given != room_of) {
-            out.set(given, rooms.size(), tree, numbering);
+            out.set(given, rooms.size(), stage, tree, numbering);
             light = coarse_light(stage, out, tree, numbering, rows);
         }
         out.portals_ = find_light_portals(stage, out, tree, numbering, light, seed, stop);
@@ -147,7 +156,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     if (divided.rooms < 2) return out;
     if (divided.rooms > rooms.size()) {
         out.surroundings_ = surroundings;
-        out.set(divided.room_of, divided.rooms, tree, numbering);
+        out.set(divided.room_of, divided.rooms, stage, tree, numbering);
         out.is_surroundings_.assign(divided.rooms, 0);
         for (std::size_t i = 0; i < room_of.size(); ++i)
             if (divided.room_of[i] >= rooms.size()) out.is_surroundings_[out.room_of_[numbering.leaves[i]]] = 1;

@@ -36,7 +36,8 @@ class LightRooms {
     LightRooms() = default;
 
     std::size_t count() const { return areas_.size(); }  ///< Number of rooms; 0 if the whole scene is one room.
-    double area(std::size_t room) const { return areas_[room]; }  ///< m^2
+    /// Area of a room without sides that no light reaches, unless there are no others; m^2.
+    double area(std::size_t room) const { return areas_[room]; }
     /// Number of closed rooms, between which no light passes; counts also those that are too small to be judged on
     /// their own: (sum of areas)^2 / sum of squared areas, so that small ones beside large ones hardly count. At least
     /// 1. Rooms that doors or windows connect count as one.
@@ -52,8 +53,8 @@ class LightRooms {
     double lost_share(RegionId region, const Point& x) const {
         return locator_ ? lost_[locator_->find(region, x).element] : 0;
     }
-    /// Factor on the area of an element that gives all rooms equal total weight: the mean area of a room over the area
-    /// of this one. The weighted areas sum to the total area. 1 if the whole scene is one room.
+    /// Factor on the area of an element that gives all rooms equal total weight: the mean area of a lit room over the
+    /// area of this one. The weighted areas of lit rooms sum to their area. 1 if the whole scene is one room.
     double weight(const ElementTree& tree, ElementId e) const;
     /// Like weight(), plus the weight that the element's light has in the other rooms that it illuminates: the ground
     /// outside a window counts by the room behind the window. It counts more if that room is darker.
@@ -69,7 +70,7 @@ class LightRooms {
     bool is_surroundings(std::size_t room) const { return room < is_surroundings_.size() && is_surroundings_[room]; }
 
   private:
-    void set(std::span<const std::size_t> room_of, std::size_t rooms, const ElementTree& tree,
+    void set(std::span<const std::size_t> room_of, std::size_t rooms, const Stage& stage, const ElementTree& tree,
              const LeafNumbering& numbering);
     void weigh(const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows,
                std::span<const double> light);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "exitance/base/clip_convex.hpp"
 #include "exitance/base/parallel.hpp"
@@ -80,23 +81,20 @@ std::vector<Contact> find_contacts(const Occluders& occluders, std::span<const P
 
 /// True if most rays from a place meet fronts or leave the scene.
 bool is_open(const Point& x, const Normal& n, RegionId region, const RayTracer& tracer) {
-    // Ways along the normal and at 45 degrees, not parallel to usual walls: derived from slopes of 0.3.
-    constexpr std::array<Vec3, 9> ways{{{0, 0, 1},
-                                        {1, 0.3, 1},
-                                        {-0.3, 1, 1},
-                                        {-1, -0.3, 1},
-                                        {0.3, -1, 1},
-                                        {0.5, 0.8, 1},
-                                        {-0.8, 0.5, 1},
-                                        {-0.5, -0.8, 1},
-                                        {0.8, -0.5, 1}}};
+    constexpr int around = 8;
+    // Rays along the normal and at 45 degrees to it. Derived from walls, which are rarely parallel to rays turned by
+    // this share of the angle between them.
+    constexpr double turn = 0.3;
     const Frame frame(n);
-    std::array<Vec3, ways.size()> directions;
-    for (std::size_t k = 0; k < ways.size(); ++k) directions[k] = frame.to_world(ways[k].x, ways[k].y, ways[k].z);
-    std::array<RayHit, ways.size()> hits;
+    std::array<Vec3, 1 + around> directions{n};
+    for (int k = 0; k < around; ++k) {
+        const double angle = 2 * pi * (k + turn) / around;
+        directions[static_cast<std::size_t>(k) + 1] = frame.to_world(std::cos(angle), std::sin(angle), 1);
+    }
+    std::array<RayHit, directions.size()> hits;
     tracer.nearest(directions, x, region, hits);
     const auto sees_light = [](const RayHit& hit) { return hit.surface.is_none() || hit.front; };
-    return 2 * std::count_if(hits.begin(), hits.end(), sees_light) > static_cast<std::ptrdiff_t>(ways.size());
+    return 2 * std::count_if(hits.begin(), hits.end(), sees_light) > static_cast<std::ptrdiff_t>(hits.size());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/transport/stage.hpp"
 #include "support/solved.hpp"
 #include "support/test_scenes.hpp"
 
