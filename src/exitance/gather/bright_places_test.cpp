@@ -113,7 +113,7 @@ TEST(BrightPlaces, AReflectorOfManyFacetsIsCoveredByABox) {
         room.b.aim_at(bright);
         const auto [aimed, aimed_spread] = gathered();
         EXPECT_NEAR(aimed, without, 4 * std::sqrt((spread + aimed_spread) / count));
-        // By chance 0.4 of 64 rays meet the reflector, and a third of the aimed ones.
+        // Only 0.4 of 64 rays meet the reflector by chance, but a third of the aimed ones.
         EXPECT_LT(aimed_spread, spread / 10);
     }
 }
