@@ -5,21 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace exitance {
 namespace {
 
-/// Number of digits before the decimal point; 0 for numbers that are written with an exponent.
-int whole_digits(double value) {
+/// Number of digits before the decimal point after rounding to `digits`; 0 for numbers that are written with an
+/// exponent.
+int whole_digits(double value, int digits) {
     constexpr double max_plain = 1e9;  // derived from memory in MiB, the largest numbers that messages compare
-    const double size = std::abs(value);
+    const double size = std::stod(fmt::format("{:.{}g}", std::abs(value), digits));
     return size >= 1 && size < max_plain ? static_cast<int>(std::floor(std::log10(size))) + 1 : 0;
 }
 
 }  // namespace
 
 NumberTexts distinct_texts(double first, double second, int digits) {
-    digits = std::max({digits, whole_digits(first), whole_digits(second)});
+    digits = std::max({digits, whole_digits(first, digits), whole_digits(second, digits)});
     while (true) {
         NumberTexts out{fmt::format("{:.{}g}", first, digits), fmt::format("{:.{}g}", second, digits)};
         if (first == second || out.first != out.second || digits >= std::numeric_limits<double>::max_digits10)

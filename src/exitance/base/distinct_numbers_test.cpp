@@ -29,6 +29,7 @@ TEST(DistinctNumbers, HaveAllDigitsBeforeTheDecimalPoint) {
     expect_texts(distinct_texts(12345.2, 12001), "12345", "12001");
     expect_texts(distinct_texts(12345.2, 12345), "12345.2", "12345");
     expect_texts(distinct_percents(12.5, 0.02), "1250", "2");
+    expect_texts(distinct_texts(999.7, 500), "999.7", "500");
 }
 
 TEST(DistinctNumbers, NeighbouringNumbersHaveDifferentTextsInTheirOrder) {

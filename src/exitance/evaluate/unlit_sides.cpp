@@ -17,11 +17,15 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned places = 16;  ///< Number of tested places on a side.
+constexpr unsigned places = 16;  ///< Number of tested places on a side of a sheet.
+/// Number of tested places on another large region, of which light may reach only a part, such as the ground before an
+/// open door. Derived from parts of a fiftieth, of which fewer than 1 in 100 are missed.
+constexpr unsigned places_on_large = 256;
 
 /// A region with all of its pieces.
 struct Side {
     RegionId region;
+    bool is_sheet;
     double area = 0;
     std::vector<const Patch*> pieces = {};
 
@@ -34,10 +38,10 @@ struct Side {
     }
 };
 
-/// Sides of sheets, and other large regions. All others are usually lit, or too small to matter.
+/// Sides of sheets, and other large regions.
 std::vector<Side> sides_to_examine(const Stage& stage) {
-    constexpr double large =
-        0.05;  // share of all area; derived from errors, which 5% of the area changes by a fortieth
+    // Share of all area, derived from errors, which a region of that size changes by a fortieth.
+    constexpr double min_share = 0.05;
     const Field<RegionId, RegionId> other = other_sides_of_regions(stage.scene);
     const auto is_sheet = [&](RegionId r) { return other.size() > 0 && !other[r].is_none(); };
     std::vector<Side> out;
@@ -45,8 +49,8 @@ std::vector<Side> sides_to_examine(const Stage& stage) {
         // Light from behind a diffusing pane counts as its own.
         if (!stage.scene.behind(piece.region).is_none()) continue;
         if (stage.scene.material(piece.region).emits()) continue;
-        if (!is_sheet(piece.region) && stage.scene.regions()[piece.region].area < large * stage.area) continue;
-        if (out.empty() || out.back().region != piece.region) out.push_back({piece.region});
+        if (!is_sheet(piece.region) && stage.scene.regions()[piece.region].area < min_share * stage.area) continue;
+        if (out.empty() || out.back().region != piece.region) out.push_back({piece.region, is_sheet(piece.region)});
         out.back().pieces.push_back(&piece.patch);
         out.back().area += piece.patch.area();
     }
@@ -59,7 +63,8 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
     const Normal& n = stage.scene.regions()[side.region].plane.n;
     const ScrambledSobol where(hash(seed, static_cast<std::uint64_t>(Stream::reference), side.region.value));
     std::vector<std::pair<Point, unsigned>> open;
-    for (unsigned i = 0; i < places; ++i) {
+    const unsigned count = side.is_sheet ? places : places_on_large;
+    for (unsigned i = 0; i < count; ++i) {
         const Point x = side.at(where(i, 0), where(i, 1), where(i, 2));
         if (!stage.occluders.is_covered(x, n, side.region)) open.emplace_back(x, i);
     }

@@ -88,6 +88,17 @@ TEST(UnlitSides, AreAlsoLargeRegionsThatAreNoSheets) {
     EXPECT_NEAR(stage.area, 7, 1e-9);
 }
 
+// A lamp in a hood on the ground lights a fiftieth of it.
+TEST(UnlitSides, AreNotRegionsOfWhichASmallPartIsLit) {
+    std::vector<Face> faces = test::closed_box({3, 3, 0}, {1, 1, 0.5});
+    faces.erase(faces.begin());  // the bottom
+    faces[0].exitance = 1;       // the top
+    faces.push_back({{{0, 0, 0}, {7, 0, 0}, {7, 7, 0}, {0, 7, 0}}});
+    const Scene scene = test::make(faces);
+    const Field<RegionId, std::uint8_t> unlit = find_unlit_sides(Stage(scene), 1, StopRequest());
+    EXPECT_TRUE(unlit.size() == 0 || !unlit[scene.surfaces()[SurfaceId(5)].region]);
+}
+
 TEST(UnlitSides, AreNotTheFacesOfALitScene) {
     std::vector<Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
     faces[0].exitance = 1;

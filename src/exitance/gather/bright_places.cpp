@@ -136,10 +136,11 @@ struct BrightBox {
         constexpr double flat = 1e-3;  // share of the longest edge; derived from sides that no ray would be aimed at
         const Vec3 size = box.hi - box.lo;
         const double longest = std::max({size.x, size.y, size.z});
+        const double largest = std::max({size.x * size.y, size.y * size.z, size.z * size.x});
         std::vector<PortalCell> out;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-            if (std::min(size[i], size[j]) < flat * longest) continue;
+            if (std::min(size[i], size[j]) < flat * longest && size[i] * size[j] < largest) continue;
             PortalCell side{box.lo, {}, {}, Normal{0, 0, 0}, size[i] * size[j], 0};
             side.u[i] = size[i], side.v[j] = size[j], side.n[k] = 1;
             out.push_back(side);
@@ -150,13 +151,13 @@ struct BrightBox {
         for (PortalCell& side : out) side.light = flux / shown();
         return out;
     }
-    /// Mean area of the box as seen from all around, times four, m^2.
+    /// Twice the mean area of the box as seen from all around, m^2.
     double shown() const {
         const Vec3 size = box.hi - box.lo;
         return size.x * size.y + size.y * size.z + size.z * size.x;
     }
-    /// Measure of the noise, twice that of a rectangle of the area shown: every ray passes through two sides.
-    double noise() const { return 2 * std::sqrt(shown() * square); }
+    /// Measure of the noise. Every ray passes through two sides, unless the box is flat.
+    double noise() const { return leaves.empty() ? 0 : (sides().size() > 1 ? 2 : 1) * std::sqrt(shown() * square); }
     std::array<BrightBox, 2> halves(const ElementTree& tree, const Field<ElementId, double>& light) const {
         const Vec3 size = box.hi - box.lo;
         const std::size_t k = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
@@ -182,7 +183,8 @@ std::vector<BrightBox> boxes_around(const ElementTree& tree, const RoomLight& ro
             std::array<BrightBox, 2> halves = box.halves(tree, light);
             // Boxes that are much smaller than the space between them are worth the comparisons with each ray.
             constexpr double worth = 0.7;  // derived from halves of a box that its leaves fill evenly, which have more
-            if (halves[0].noise() + halves[1].noise() < worth * box.noise()) {
+            const bool are_two = !halves[0].leaves.empty() && !halves[1].leaves.empty();
+            if (are_two && halves[0].noise() + halves[1].noise() < worth * box.noise()) {
                 for (BrightBox& half : halves) open.push_back(std::move(half));
                 continue;
             }

@@ -67,34 +67,39 @@ TEST(BrightPlaces, AreCoveredAndLeaveTheExpectedLight) {
 }
 
 /// The inside of a reflector of 24 facets, 0.3 m wide and open at the bottom, in a room of 4 x 4 x 3 m that reflects
-/// 1 W/m^2.
+/// 1 W/m^2. `up` is the direction from the floor to the ceiling.
 struct RoomWithReflector {
     static constexpr double bright = 1000;
+    Frame frame;
     Scene scene;
     Stage stage{scene};
     ElementTree tree = stage.make_elements({.edge = 0.2});
-    PointwiseLight b{[](RegionId, const Point& y) {
-        return Spectrum(std::hypot(y.x - 2, y.y - 2) < 0.2 && y.z > 1.5 && y.z < 2.5 ? bright : 1);
+    PointwiseLight b{[this](RegionId, const Point& y) {
+        const Vec3 to = y - Point{};
+        const double height = dot(to, frame.n), aside = std::hypot(dot(to, frame.u) - 2, dot(to, frame.v) - 2);
+        return Spectrum(aside < 0.2 && height > 1.5 && height < 2.5 ? bright : 1);
     }};
 
-    explicit RoomWithReflector(double turn) : scene(faces(turn)) {}
-    static Scene faces(double turn) {
+    explicit RoomWithReflector(const Normal& up) : frame(up), scene(faces(frame)) {}
+    static Scene faces(const Frame& frame) {
         std::vector<test::Face> out = test::closed_box({0, 0, 0}, {4, 4, 3});
         constexpr int count = 24;
         for (int i = 0; i < count; ++i) {
             const auto at = [&](int k, double radius, double z) {
-                const double angle = turn + 2 * pi * k / count;
+                const double angle = 2 * pi * k / count;
                 return Point{2 + radius * std::cos(angle), 2 + radius * std::sin(angle), z};
             };
             out.push_back({{at(i + 1, 0.15, 2), at(i, 0.15, 2), at(i, 0.05, 2.3), at(i + 1, 0.05, 2.3)}});
         }
+        for (test::Face& face : out)
+            for (Point& p : face.corners) p = Point{} + frame.to_world(p.x, p.y, p.z);
         return test::make(out);
     }
 };
 
 TEST(BrightPlaces, AReflectorOfManyFacetsIsCoveredByABox) {
-    for (const double turn : {0.0, 0.1}) {
-        RoomWithReflector room(turn);
+    for (const Normal& up : {Normal{0, 0, 1}, normalized(Vec3{0.3, -0.5, 0.7})}) {
+        RoomWithReflector room(up);
         const BrightPlaces bright = find_bright_places(room.stage, room.tree, room.b);
         ASSERT_FALSE(bright.of_room(0).empty());
         GatherWorkspace workspace;

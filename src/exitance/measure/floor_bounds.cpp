@@ -137,7 +137,7 @@ class Bounds {
         const Vec3 inwards = normalized(edge.inner - edge.outer);
         const Point behind = place + (depth - dot(place - edge.outer, inwards)) * inwards;
         const RayHit above = hit(behind, -1 * down);
-        return !above.surface.is_none() && !above.front;
+        return !above.surface.is_none() && !above.front && !above.is_glass;
     }
 
     static bool crosses(const Pane& pane, const Point& p, const Point& q) {

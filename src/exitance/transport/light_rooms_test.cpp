@@ -75,6 +75,31 @@ TEST(LightRooms, RoomsConnectedByADoorAreTwo) {
     EXPECT_NEAR(rooms.area(0), rooms.area(1), 0.05 * rooms.area(0));
 }
 
+TEST(LightRooms, GroundThatNoLightReachesDoesNotWeighTheRoom) {
+    // Two equal rooms beside 1 km of ground. If the ground counted as a room, each element would weigh 10^4.
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}, {"ground", Spectrum(0.5), Spectrum()}};
+    add_box(d, {0, 0, 0}, {4, 4, 3}, 0);
+    add_box(d, {10, 0, 0}, {14, 4, 3}, 0);
+    for (const Point& p : {Point{-500, -500, -1}, {500, -500, -1}, {500, 500, -1}, {-500, 500, -1}})
+        d.points.push_back(p);
+    d.faces.push_back({{48, 49, 50, 51}, 1, 0, 0});
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    Stage stage(scene);
+    Field<RegionId, std::uint8_t> unlit(scene.regions().size());
+    unlit[scene.surfaces()[SurfaceId(12)].region] = 1;
+    stage.set_unlit_sides(std::move(unlit));
+    const StopRequest stop;
+    const LightRooms rooms = find_light_rooms(stage, 1, stop);
+    ASSERT_GE(rooms.count(), 2u);
+    const ElementTree tree = stage.make_elements({1, 0});
+    for (ElementId e : tree.leaves()) {
+        if (stage.is_unlit(tree.region(e))) continue;
+        EXPECT_NEAR(rooms.weight(tree, e), 1, 0.1);
+    }
+}
+
 TEST(LightRooms, LeavesThatSeeNoFrontBelongToTheRoomBesideThem) {
     // A board lies 1 mm above the floor of the smaller room: no ray from below it hits a front.
     SceneDescription d;
@@ -84,7 +109,7 @@ TEST(LightRooms, LeavesThatSeeNoFrontBelongToTheRoomBesideThem) {
     add_box(d, {10, 0, 0}, {12, 2, 2}, 0);
     for (const Point& p : {Point{10.5, 0.5, 0.001}, {11.5, 0.5, 0.001}, {11.5, 1.5, 0.001}, {10.5, 1.5, 0.001}})
         d.points.push_back(p);
-    d.faces.push_back({{16, 17, 18, 19}, 0, 0, 0});
+    d.faces.push_back({{48, 49, 50, 51}, 0, 0, 0});
     const Scene scene = std::move(*make_scene(std::move(d)).scene);
     const LightRooms rooms = rooms_of(scene);
     ASSERT_EQ(rooms.count(), 2u);

@@ -1,10 +1,11 @@
 #include "exitance/view_factors/gray_exchange.hpp"
-#include "exitance/base/distinct_numbers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "exitance/base/distinct_numbers.hpp"
 
 namespace exitance {
 namespace {
@@ -183,7 +184,7 @@ Result<void> check(const SparseFactors& factors, std::span<const ThermalSurface>
                          fmt::format("temperatures are in kelvins, from 0 to below {}", max_temperature));
         if (!s.temperature && !(std::abs(s.heat) <= max_heat))
             return wrong(fmt::format("surface {}: heat {} is out of range", i + 1, s.heat),
-                         "heat is in watts, of the whole surface");
+                         "heat is in watts, of the whole surface, and at most 1e100");
     }
     if (!surroundings) return check_closed(factors);
     if (!(*surroundings >= 0 && *surroundings < max_temperature))

@@ -246,6 +246,7 @@ struct RayTracer::Content : TracedScene {
     /// True if anything is between a point below a close face and another point.
     bool is_blocked_below(const Ceiling& close, const RayEnd& x, const RayEnd& other) const {
         const Ceiling above_other = ceiling(other);
+        if (!close.cover.is_none() || !above_other.cover.is_none()) return true;
         const Point end = above_other.is_close() ? start_below(above_other, other) : other.x + offset(other.region);
         RayHit hit;
         trace_below(close, x, end - x.x, hit);

@@ -93,7 +93,7 @@ bool is_open(const Point& x, const Normal& n, RegionId region, const RayTracer& 
     }
     std::array<RayHit, directions.size()> hits;
     tracer.nearest(directions, x, region, hits);
-    const auto sees_light = [](const RayHit& hit) { return hit.surface.is_none() || hit.front; };
+    const auto sees_light = [](const RayHit& hit) { return hit.surface.is_none() || hit.front || hit.is_glass; };
     return 2 * std::count_if(hits.begin(), hits.end(), sees_light) > static_cast<std::ptrdiff_t>(hits.size());
 }
 

@@ -1,9 +1,10 @@
 #include "exitance/cli/verbs/factor_facts.hpp"
-#include "exitance/base/distinct_numbers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "exitance/base/distinct_numbers.hpp"
 
 namespace exitance {
 

@@ -1,6 +1,7 @@
 #include "exitance/methods/light/light_functions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -350,8 +351,26 @@ std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light
     return out;
 }
 
+namespace {
+
+/// 1 for rooms that have a place on a side that light may reach.
+std::vector<char> are_rooms_lit(const Stage& stage) {
+    std::vector<char> out(stage.rooms.count());
+    // Parts of a piece's edges, derived from rooms, most of whose walls are whole pieces.
+    constexpr std::array<double, 3> places{0.1, 0.5, 0.9};
+    for (const Piece& piece : stage.lit_pieces())
+        for (const double u : places)
+            for (const double v : places)
+                out[stage.rooms.at(piece.region, piece.patch.at(uniform_in_shape(piece.patch.shape, u, v)))] = 1;
+    return out;
+}
+
+}  // namespace
+
 std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> light_in, double of_all) {
     std::vector<double> out(light_in.begin(), light_in.end());
+    if (out.empty()) return out;
+    const std::vector<char> is_lit = are_rooms_lit(stage);
     // squared budget of the rooms that are not capped, and the area share of the others
     double left = of_all, area = 1;
     std::vector<std::size_t> rising(out.size());
@@ -359,6 +378,7 @@ std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> 
     std::stable_sort(rising.begin(), rising.end(), [&](std::size_t a, std::size_t b) { return out[a] < out[b]; });
     for (std::size_t k = 0; k < rising.size(); ++k) {
         const std::size_t room = rising[k];
+        if (!is_lit[room]) continue;  // its area is no part of that of the stage
         const double share = stage.rooms.area(room) / stage.area, cap = std::sqrt(left / area);
         if (out[room] >= cap) {
             for (; k < rising.size(); ++k) out[rising[k]] = cap;

@@ -1,4 +1,3 @@
-#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/solver/standard_solver.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/base/memory.hpp"
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/direct_light_noise.hpp"

@@ -1,4 +1,3 @@
-#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/solver/solver.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/calibration/error_budget.hpp"
 #include "exitance/error/direct_light_noise.hpp"
 #include "exitance/error/further_measurements.hpp"

@@ -1,4 +1,3 @@
-#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/methods/solver/published_solver.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exitance/base/distinct_numbers.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/light/light_functions.hpp"
