@@ -75,6 +75,22 @@ bool has_no_gradient(const SolveRequest& r) {
 constexpr std::array<std::pair<bool, std::string_view>, 2> quantity_kinds{
     {{false, "radiometric"}, {true, "photometric"}}};
 
+OptionRow row_of_light_groups() {
+    using R = SolveRequest;
+    return {.name = "--light-groups",
+            .value = flag(at(&R::light_groups)),
+            .does =
+                "Also solve for each light group (the lamps of one object, see docs/methods/light_groups.md) and "
+                "store its light, so that mix, view and bake can dim it",
+            .when = "A solve then takes two to three times as long",
+            .group = group::light,
+            .support = {{standard({matrix, hierarchical, wavelet, progressive, substructuring, monte_carlo})},
+                        {standard({discontinuity}), "", has_layers, with_layers}},
+            .excludes = {{"--keep-links"}, {"--checkpoint-every"}, {"--resume"}},
+            .one_process = "*",
+            .section = "-"};
+}
+
 std::vector<OptionRow> rows_of_light() {
     using R = SolveRequest;
     using O = SolveOptions;
@@ -124,17 +140,7 @@ std::vector<OptionRow> rows_of_light() {
          .group = group::light,
          .support = links_of_hierarchies(),
          .one_process = "*"},
-        {.name = "--light-groups",
-         .value = flag(at(&R::light_groups)),
-         .does = "Also solve for each light group (the lamps of one object, see docs/methods/light_groups.md) and "
-                 "store its light, so that mix, view and bake can dim it",
-         .when = "A solve then takes two to three times as long",
-         .group = group::light,
-         .support = {{standard({matrix, hierarchical, wavelet, progressive, substructuring, monte_carlo})},
-                     {standard({discontinuity}), "", has_layers, with_layers}},
-         .excludes = {{"--keep-links"}, {"--checkpoint-every"}, {"--resume"}},
-         .one_process = "*",
-         .section = "-"},
+        row_of_light_groups(),
     };
 }
 
